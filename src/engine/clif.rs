@@ -1,0 +1,1 @@
+//! One chunk of logic to one Cranelift function.

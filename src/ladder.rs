@@ -1,0 +1,306 @@
+//! A ladder program as it was drawn: declarations, rungs, and in each rung the network of contacts, coils and
+//! blocks, everything with its span.
+//!
+//! This is what front ends make, `fmt` and `show` print, and `check` resolves. It holds names, not meanings:
+//! nothing here must look a name up, fold a constant or know how an element computes.
+//!
+//! A rung's network is a tree of series and parallel with **named nodes** for what no such tree can hold. A
+//! branch may end at a node and another may start there, so that any directed network, bridges included, is a
+//! list of branches. Within a rung the elements run depth first, left to right and top to bottom, exactly in the
+//! order of the tree.
+
+mod expression;
+pub mod library;
+
+pub use expression::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
+
+use crate::source::Span;
+
+/// A name with its spelling as written. Names are compared without regard to case.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Name {
+    /// As written, without back quotes.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+}
+
+impl Name {
+    /// A name at a place.
+    pub fn new(text: impl Into<String>, span: Span) -> Self {
+        Self { text: text.into(), span }
+    }
+
+    /// What two spellings of one name have in common: the form to compare and to look up by.
+    pub fn key(&self) -> String {
+        key(&self.text)
+    }
+}
+
+/// The form in which names are compared: IEC 61131-3 identifiers are case-insensitive.
+pub fn key(name: &str) -> String {
+    name.to_lowercase()
+}
+
+/// What a program was read from, where checking depends on it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Origin {
+    /// Rung's own text: a doubtful construct is an error.
+    Native,
+    /// A file of another tool: what that tool accepts is at most a warning.
+    Imported,
+}
+
+/// One ladder program.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Program {
+    /// What it was read from.
+    pub origin: Origin,
+    /// Its name.
+    pub name: Name,
+    /// The declared variables and block instances, in order.
+    pub variables: Vec<Variable>,
+    /// The rungs, in order of execution.
+    pub rungs: Vec<Rung>,
+    /// Every comment of the source, in order of place; printers put them back beside what they stood beside.
+    pub comments: Vec<Comment>,
+}
+
+/// A comment of the source.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Comment {
+    /// What it says, without the marks that make it a comment and without surrounding blanks.
+    pub text: String,
+    /// Where, marks included.
+    pub span: Span,
+    /// Whether it stands on a line of its own rather than behind something.
+    pub own_line: bool,
+}
+
+/// What a declaration declares.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum VariableClass {
+    /// Copied in before each scan.
+    Input,
+    /// Copied out after each scan.
+    Output,
+    /// Neither: memory, or a block instance.
+    Memory,
+    /// Never written after start.
+    Constant,
+}
+
+/// A declared variable or block instance.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Variable {
+    /// What it is declared as.
+    pub class: VariableClass,
+    /// Its name.
+    pub name: Name,
+    /// The name of its type; BOOL where it is left out.
+    pub type_name: Option<Name>,
+    /// The IEC address that it stands at.
+    pub address: Option<Address>,
+    /// The value that it starts with.
+    pub initial: Option<Expression>,
+    /// Whether it keeps its value while the power is off.
+    pub retain: bool,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// The area of a directly represented variable (IEC 61131-3, 6.5.5).
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Area {
+    /// `%I`
+    Input,
+    /// `%Q`
+    Output,
+    /// `%M`
+    Memory,
+}
+
+/// The width of a directly represented variable.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Width {
+    /// `X`, or no letter: one bit.
+    Bit,
+    /// `B`: 8 bits.
+    Byte,
+    /// `W`: 16 bits.
+    Word,
+    /// `D`: 32 bits.
+    Double,
+    /// `L`: 64 bits.
+    Long,
+}
+
+impl Width {
+    /// How many bits.
+    pub const fn bits(self) -> u32 {
+        match self {
+            Self::Bit => 1,
+            Self::Byte => 8,
+            Self::Word => 16,
+            Self::Double => 32,
+            Self::Long => 64,
+        }
+    }
+}
+
+/// An IEC address: `%IX0.3` is area `Input`, width `Bit`, numbers 0 and 3.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Address {
+    /// Where it lies.
+    pub area: Area,
+    /// How wide it is.
+    pub width: Width,
+    /// The hierarchical numbers, at least one.
+    pub numbers: Vec<u32>,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// One rung.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Rung {
+    /// Its name, where it has one.
+    pub name: Option<Name>,
+    /// What it is for, in the drawer's words.
+    pub title: Option<String>,
+    /// Whether it runs; one that is off is checked and drawn all the same.
+    pub enabled: bool,
+    /// Its network. The left rail is its left side; the power at its right side is not used.
+    pub circuit: Circuit,
+    /// From its first word to its last element.
+    pub span: Span,
+}
+
+/// Branches in parallel, from top to bottom: the power on the right is the OR of theirs.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Circuit {
+    /// At least one.
+    pub branches: Vec<Branch>,
+    /// Where.
+    pub span: Span,
+}
+
+/// Elements in series, from left to right.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Branch {
+    /// The node that it starts at; without one, the left side of the circuit around it.
+    pub from: Option<Name>,
+    /// In order; empty for a plain wire.
+    pub elements: Vec<Element>,
+    /// The node that it ends at and feeds; without one, the right side of the circuit around it. The power on a
+    /// node is the OR of all branches that end there, and they all must stand before the first that starts there.
+    pub to: Option<Name>,
+    /// Where.
+    pub span: Span,
+}
+
+/// One element of a branch.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Element {
+    /// What it is.
+    pub kind: ElementKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// What an element is.
+#[derive(Clone, PartialEq, Debug)]
+pub enum ElementKind {
+    /// Passes power on as its operand says.
+    Contact {
+        /// How it reads the operand.
+        kind: ContactKind,
+        /// What it reads: a reference, or a literal TRUE or FALSE.
+        operand: Expression,
+    },
+    /// Writes a variable and passes its power on.
+    Coil {
+        /// What it writes.
+        kind: CoilKind,
+        /// To where.
+        target: Reference,
+    },
+    /// Calls a function block.
+    Block(BlockCall),
+    /// Braces around a BOOL expression: a contact that conducts while it is true.
+    Condition(Expression),
+    /// Braces around an assignment: it executes while it has power, and passes its power on.
+    Assignment {
+        /// What it writes.
+        target: Reference,
+        /// The value.
+        value: Expression,
+    },
+    /// Branches in parallel.
+    Parallel(Circuit),
+}
+
+/// How a contact reads its operand.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum ContactKind {
+    /// Normally open: conducts while it is TRUE.
+    Open,
+    /// Normally closed: conducts while it is FALSE.
+    Closed,
+    /// Conducts for the scan in which it becomes TRUE.
+    Rising,
+    /// Conducts for the scan in which it becomes FALSE.
+    Falling,
+}
+
+/// What a coil writes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum CoilKind {
+    /// The power.
+    Plain,
+    /// The power, negated.
+    Negated,
+    /// TRUE while there is power, else nothing.
+    Set,
+    /// FALSE while there is power, else nothing.
+    Reset,
+    /// TRUE for the scan in which the power comes.
+    Rising,
+    /// TRUE for the scan in which the power goes.
+    Falling,
+}
+
+/// A call of a function block.
+#[derive(Clone, PartialEq, Debug)]
+pub struct BlockCall {
+    /// The instance.
+    pub instance: Name,
+    /// The type, where the call names it; an instance declared elsewhere needs none.
+    pub type_name: Option<Name>,
+    /// What is wired to the pins, in the order written.
+    pub arguments: Vec<Argument>,
+    /// The BOOL output that gives the power on the right, where one is chosen.
+    pub power_output: Option<Name>,
+}
+
+/// One wired pin.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Argument {
+    /// The pin.
+    pub pin: Name,
+    /// What is wired to it.
+    pub wire: Wire,
+    /// The whole argument.
+    pub span: Span,
+}
+
+/// What is wired to a pin.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Wire {
+    /// `pin := expression`
+    Value(Expression),
+    /// `pin := [ circuit ]`, from the left rail, to a BOOL input.
+    Circuit(Circuit),
+    /// `pin => variable`, from an output.
+    Output(Reference),
+}

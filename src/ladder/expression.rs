@@ -1,0 +1,181 @@
+//! Expressions as written: what stands in braces, at pins and behind `:=` in declarations.
+
+use super::{Address, Name};
+use crate::elementary::Elementary;
+use crate::source::Span;
+
+/// An expression in IEC 61131-3 syntax.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Expression {
+    /// What it is.
+    pub kind: ExpressionKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, PartialEq, Debug)]
+pub enum ExpressionKind {
+    /// A value.
+    Literal(Literal),
+    /// A variable, a member, a bit or an address.
+    Read(Reference),
+    /// One operand.
+    Unary(UnaryOperator, Box<Expression>),
+    /// Two operands.
+    Binary(BinaryOperator, Box<Expression>, Box<Expression>),
+}
+
+/// A literal. Whether a number fits its type is for `check` to say.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Literal {
+    /// `TRUE`, `FALSE`.
+    Bool(bool),
+    /// `12`, `16#FF`, `INT#5`.
+    Integer {
+        /// Its magnitude; a sign is a unary operator.
+        value: u128,
+        /// The base in which it was written: 2, 8, 10 or 16.
+        base: u8,
+        /// The type before the `#`.
+        ty: Option<Elementary>,
+    },
+    /// `1.5`, `REAL#1.0e3`.
+    Real {
+        /// Its value, finite.
+        value: f64,
+        /// The type before the `#`.
+        ty: Option<Elementary>,
+    },
+    /// `T#1m30s`: nanoseconds, negative behind a minus sign.
+    Time(i64),
+}
+
+/// Something that can be read, and perhaps written.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Reference {
+    /// Where it starts.
+    pub root: Root,
+    /// The way from there.
+    pub steps: Vec<Step>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// Where a reference starts.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Root {
+    /// A declared name.
+    Name(Name),
+    /// An address without a declaration.
+    Address(Address),
+}
+
+/// One step of a reference.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Step {
+    /// `.name`
+    Member(Name),
+    /// `.3`: a bit of a bit string or integer, from 0.
+    Bit(u8, Span),
+}
+
+/// Operators on one operand.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum UnaryOperator {
+    /// `NOT`
+    Not,
+    /// `-`
+    Negate,
+}
+
+/// Operators on two operands.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum BinaryOperator {
+    /// `OR`
+    Or,
+    /// `XOR`
+    Xor,
+    /// `AND`, `&`
+    And,
+    /// `=`
+    Equal,
+    /// `<>`
+    NotEqual,
+    /// `<`
+    Less,
+    /// `<=`
+    LessOrEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterOrEqual,
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+    /// `MOD`
+    Modulo,
+}
+
+impl BinaryOperator {
+    /// Every operator.
+    pub const ALL: [Self; 14] = [
+        Self::Or,
+        Self::Xor,
+        Self::And,
+        Self::Equal,
+        Self::NotEqual,
+        Self::Less,
+        Self::LessOrEqual,
+        Self::Greater,
+        Self::GreaterOrEqual,
+        Self::Add,
+        Self::Subtract,
+        Self::Multiply,
+        Self::Divide,
+        Self::Modulo,
+    ];
+
+    /// Its canonical spelling.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Or => "OR",
+            Self::Xor => "XOR",
+            Self::And => "AND",
+            Self::Equal => "=",
+            Self::NotEqual => "<>",
+            Self::Less => "<",
+            Self::LessOrEqual => "<=",
+            Self::Greater => ">",
+            Self::GreaterOrEqual => ">=",
+            Self::Add => "+",
+            Self::Subtract => "-",
+            Self::Multiply => "*",
+            Self::Divide => "/",
+            Self::Modulo => "MOD",
+        }
+    }
+
+    /// How tightly it binds: a greater number binds tighter (IEC 61131-3, table 71). All associate to the left.
+    pub const fn precedence(self) -> u8 {
+        match self {
+            Self::Or => 1,
+            Self::Xor => 2,
+            Self::And => 3,
+            Self::Equal | Self::NotEqual => 4,
+            Self::Less | Self::LessOrEqual | Self::Greater | Self::GreaterOrEqual => 5,
+            Self::Add | Self::Subtract => 6,
+            Self::Multiply | Self::Divide | Self::Modulo => 7,
+        }
+    }
+
+    /// Whether it compares, so that its result is a BOOL whatever its operands are.
+    pub const fn is_comparison(self) -> bool {
+        matches!(self.precedence(), 4 | 5)
+    }
+}

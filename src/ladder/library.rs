@@ -1,0 +1,89 @@
+//! The standard function blocks: their names, pins and types.
+//!
+//! One entry a block, and its rule in one function of `lower`; nothing else must know what pins a block has.
+//! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5.
+
+use crate::elementary::Elementary::{self, Bool, Int, Time};
+
+/// One input or output of a block.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Pin {
+    /// Its name, as the standard spells it.
+    pub name: &'static str,
+    /// Its type.
+    pub ty: Elementary,
+}
+
+const fn pin(name: &'static str, ty: Elementary) -> Pin {
+    Pin { name, ty }
+}
+
+macro_rules! blocks {
+    ($($(#[$doc:meta])* $variant:ident $name:literal ($($input:literal: $input_type:ident),*) => ($($output:literal: $output_type:ident),*);)*) => {
+        /// A standard function block.
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+        pub enum StandardBlock {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl StandardBlock {
+            /// Every block.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            /// Its type name, as the standard spells it.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// Its inputs, in order.
+            pub const fn inputs(self) -> &'static [Pin] {
+                match self { $(Self::$variant => const { &[$(pin($input, $input_type),)*] },)* }
+            }
+
+            /// Its outputs, in order.
+            pub const fn outputs(self) -> &'static [Pin] {
+                match self { $(Self::$variant => const { &[$(pin($output, $output_type),)*] },)* }
+            }
+        }
+    };
+}
+
+blocks! {
+    /// On-delay timer.
+    Ton "TON" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    /// Off-delay timer.
+    Tof "TOF" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    /// Pulse timer.
+    Tp "TP" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    /// Up counter.
+    Ctu "CTU" ("CU": Bool, "R": Bool, "PV": Int) => ("Q": Bool, "CV": Int);
+    /// Down counter.
+    Ctd "CTD" ("CD": Bool, "LD": Bool, "PV": Int) => ("Q": Bool, "CV": Int);
+    /// Up-down counter.
+    Ctud "CTUD" ("CU": Bool, "CD": Bool, "R": Bool, "LD": Bool, "PV": Int) => ("QU": Bool, "QD": Bool, "CV": Int);
+    /// Rising edge.
+    RTrig "R_TRIG" ("CLK": Bool) => ("Q": Bool);
+    /// Falling edge.
+    FTrig "F_TRIG" ("CLK": Bool) => ("Q": Bool);
+    /// Bistable, set dominant.
+    Sr "SR" ("S1": Bool, "R": Bool) => ("Q1": Bool);
+    /// Bistable, reset dominant.
+    Rs "RS" ("S": Bool, "R1": Bool) => ("Q1": Bool);
+}
+
+impl StandardBlock {
+    /// The block of that type name, in any case.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|block| block.name().eq_ignore_ascii_case(name))
+    }
+
+    /// The place of an input among [`StandardBlock::inputs`], by its name in any case.
+    pub fn input(self, name: &str) -> Option<usize> {
+        self.inputs().iter().position(|pin| pin.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The place of an output among [`StandardBlock::outputs`], by its name in any case.
+    pub fn output(self, name: &str) -> Option<usize> {
+        self.outputs().iter().position(|pin| pin.name.eq_ignore_ascii_case(name))
+    }
+}

@@ -1,0 +1,17 @@
+//! Rung: a compiler and runtime for PLC ladder diagrams.
+//!
+//! A program goes through these stages, each a module that knows only those before it; `ARCHITECTURE.md` is the map.
+//!
+//! [`frontend`] reads bytes into a [`ladder::Program`]; [`check`] resolves it to a [`check::Checked`]; [`lower`]
+//! turns that into one straight-line scan of [`logic`], which [`opt`] improves and [`engine`] interprets or compiles.
+
+pub mod check;
+pub mod diagnostic;
+pub mod elementary;
+pub mod engine;
+pub mod frontend;
+pub mod ladder;
+pub mod logic;
+pub mod lower;
+pub mod opt;
+pub mod source;

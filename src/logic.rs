@@ -1,0 +1,72 @@
+//! The logic IR: one scan, flattened to a straight line of primitive operations over the process image.
+//!
+//! A [`Program`] is an image [`Layout`] and a list of instructions in SSA form, cut into **sections** (one a
+//! rung, each with an opaque origin) and those into **chunks**, beyond which no value lives. There is no control
+//! flow, no block, no clock: a scan is a pure function of the image and of `now`.
+//!
+//! What each operation computes is [`evaluate`], and only that; every engine is tested against it. This module
+//! must never know ladder or Cranelift.
+
+mod build;
+pub mod evaluate;
+pub mod image;
+mod op;
+
+pub use build::Builder;
+pub use image::{Area, Layout, LayoutBuilder, Slot, SlotId};
+pub use op::{Binary, Compare, Domain, Instruction, Op, Unary, ValueId};
+
+/// Sections to a chunk, unless the builder cuts earlier. Chunks of 64 to 1024 rungs run alike; smaller ones
+/// compile in parallel and are replaced one by one.
+pub const CHUNK_SECTIONS: u32 = 128;
+
+/// One scan.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Program {
+    /// The name of the program that it was made from.
+    pub name: String,
+    /// The process image.
+    pub layout: Layout,
+    /// What sections come from.
+    pub origins: Vec<Origin>,
+    /// The sections, in order, which together cover all instructions.
+    pub sections: Vec<Section>,
+    /// The instructions. A value is named by the place of the instruction that defines it.
+    pub instructions: Vec<Instruction>,
+}
+
+/// What a section was made from: opaque here, for reports, comments and diagnostics.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Origin {
+    /// A short label, such as the name of a rung.
+    pub label: String,
+    /// The line of the source, from 1; 0 where there is none.
+    pub line: u32,
+}
+
+/// A run of instructions with one origin.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Section {
+    /// Index into [`Program::origins`].
+    pub origin: u32,
+    /// One past its last instruction; the first is where the section before ends.
+    pub end: u32,
+    /// Whether a new chunk starts here. The first section always starts one.
+    pub starts_chunk: bool,
+}
+
+impl Program {
+    /// The instructions of a section, as indices into [`Program::instructions`].
+    pub fn section_range(&self, section: usize) -> std::ops::Range<usize> {
+        let start = if section == 0 { 0 } else { self.sections[section - 1].end as usize };
+        start..self.sections[section].end as usize
+    }
+
+    /// The chunks, each as a range of sections.
+    pub fn chunks(&self) -> Vec<std::ops::Range<usize>> {
+        let mut starts: Vec<usize> =
+            (0..self.sections.len()).filter(|section| *section == 0 || self.sections[*section].starts_chunk).collect();
+        starts.push(self.sections.len());
+        starts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+    }
+}

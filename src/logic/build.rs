@@ -1,0 +1,131 @@
+//! Building a program, one instruction after another.
+//!
+//! The builder keeps values inside chunks and gives each section its origin. It must never simplify anything:
+//! that is for the passes.
+
+use super::{
+    Binary, CHUNK_SECTIONS, Compare, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary, ValueId,
+};
+use crate::elementary::{Elementary, Value};
+
+/// Makes one [`Program`].
+#[derive(Debug)]
+pub struct Builder {
+    program: Program,
+    chunk_sections: u32,
+}
+
+impl Builder {
+    /// An empty program over an image.
+    pub fn new(name: impl Into<String>, layout: Layout) -> Self {
+        let program =
+            Program { name: name.into(), layout, origins: Vec::new(), sections: Vec::new(), instructions: Vec::new() };
+        Self { program, chunk_sections: 0 }
+    }
+
+    /// The image that it is built over.
+    pub fn layout(&self) -> &Layout {
+        &self.program.layout
+    }
+
+    /// Ends a section: all instructions since the last one get this origin. Where the chunk is full, values made
+    /// so far must not be used after.
+    pub fn end_section(&mut self, origin: Origin) {
+        let starts_chunk = self.chunk_sections == 0;
+        self.chunk_sections = (self.chunk_sections + 1) % CHUNK_SECTIONS;
+        let origin_index = index(self.program.origins.len());
+        self.program.origins.push(origin);
+        let end = index(self.program.instructions.len());
+        self.program.sections.push(Section { origin: origin_index, end, starts_chunk });
+    }
+
+    /// The finished program. Instructions after the last section's end belong to none and are dropped.
+    pub fn finish(mut self) -> Program {
+        let end = self.program.sections.last().map_or(0, |section| section.end as usize);
+        self.program.instructions.truncate(end);
+        self.program
+    }
+
+    /// The type of a value made before.
+    pub fn ty(&self, value: ValueId) -> Elementary {
+        self.program.instructions[value.index()].ty
+    }
+
+    fn push(&mut self, ty: Elementary, op: Op) -> ValueId {
+        let value = ValueId(index(self.program.instructions.len()));
+        self.program.instructions.push(Instruction { ty, op });
+        value
+    }
+
+    /// A constant.
+    pub fn constant(&mut self, value: Value) -> ValueId {
+        self.push(value.ty(), Op::Constant(value.bits()))
+    }
+
+    /// FALSE or TRUE.
+    pub fn bool(&mut self, value: bool) -> ValueId {
+        self.constant(Value::bool(value))
+    }
+
+    /// The latched time, a TIME.
+    pub fn now(&mut self) -> ValueId {
+        self.push(Elementary::Time, Op::Now)
+    }
+
+    /// The value of a slot.
+    pub fn load(&mut self, slot: SlotId) -> ValueId {
+        let ty = self.program.layout.slot(slot).ty;
+        self.push(ty, Op::Load(slot))
+    }
+
+    /// Sets a slot.
+    pub fn store(&mut self, slot: SlotId, value: ValueId) {
+        let ty = self.program.layout.slot(slot).ty;
+        self.push(ty, Op::Store(slot, value));
+    }
+
+    /// An operation on one operand.
+    pub fn unary(&mut self, op: Unary, a: ValueId) -> ValueId {
+        self.push(self.ty(a), Op::Unary(op, a))
+    }
+
+    /// An operation on two operands; the result has the type of the first.
+    pub fn binary(&mut self, op: Binary, a: ValueId, b: ValueId) -> ValueId {
+        self.push(self.ty(a), Op::Binary(op, a, b))
+    }
+
+    /// A comparison.
+    pub fn compare(&mut self, op: Compare, a: ValueId, b: ValueId) -> ValueId {
+        self.push(Elementary::Bool, Op::Compare(op, a, b))
+    }
+
+    /// `a` while `condition` is TRUE, else `b`.
+    pub fn select(&mut self, condition: ValueId, a: ValueId, b: ValueId) -> ValueId {
+        self.push(self.ty(a), Op::Select(condition, a, b))
+    }
+
+    /// `a` as another type.
+    pub fn convert(&mut self, a: ValueId, to: Elementary) -> ValueId {
+        self.push(to, Op::Convert(a))
+    }
+
+    /// NOT a.
+    pub fn not(&mut self, a: ValueId) -> ValueId {
+        self.unary(Unary::Not, a)
+    }
+
+    /// a AND b.
+    pub fn and(&mut self, a: ValueId, b: ValueId) -> ValueId {
+        self.binary(Binary::And, a, b)
+    }
+
+    /// a OR b.
+    pub fn or(&mut self, a: ValueId, b: ValueId) -> ValueId {
+        self.binary(Binary::Or, a, b)
+    }
+}
+
+/// A count as a 32-bit index. A program of more than 2^32 instructions would need over 90 GB first.
+fn index(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,390 @@
+//! The process image: one flat block of bytes with a slot for every variable and every state of a block.
+//!
+//! The layout is computed before any pass and is the same for every engine and target, in the target's byte
+//! order. In order: inputs, outputs, retained memory, other memory, block state. Outputs that are retained come
+//! last among the outputs, so that inputs, outputs and the retained are each one contiguous run. Within a run,
+//! BOOLs come first and wider types after them in order of width, so that padding is small and near.
+//!
+//! With an earlier layout given, every slot of it keeps its offset, new ones are appended as a second group of
+//! the same order, and each run gets one more [`Extent`].
+
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::Range;
+
+use crate::elementary::{Elementary, Value, canonical};
+
+/// Bytes behind the last slot: an engine may read a BOOL as the low byte of 4.
+pub const TAIL_PADDING: u32 = 3;
+
+/// The alignment of an image's first byte and, in multiples, its size.
+pub const ALIGNMENT: u32 = 8;
+
+/// The largest image, in bytes: 1 GiB.
+pub const MAXIMUM_SIZE: u32 = 1 << 30;
+
+/// A slot, by its place in [`Layout::slots`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct SlotId(pub u32);
+
+impl SlotId {
+    /// The place as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl fmt::Display for SlotId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "s{}", self.0)
+    }
+}
+
+/// Which part of the image a slot belongs to.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Area {
+    /// Copied in before a scan.
+    Input,
+    /// Copied out after a scan.
+    Output,
+    /// Variables.
+    Memory,
+    /// What blocks and edges remember.
+    State,
+}
+
+/// One value in the image.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Slot {
+    /// A name that is unique in the layout and stable over edits elsewhere in the program.
+    pub name: String,
+    /// Its type.
+    pub ty: Elementary,
+    /// Where it lies, in bytes from the start of the image, aligned to its size.
+    pub offset: u32,
+    /// Which part it belongs to.
+    pub area: Area,
+    /// Whether it is kept while the power is off.
+    pub retain: bool,
+    /// What it holds before the first scan.
+    pub initial: Value,
+    /// The line of the source that declares it, from 1; 0 where there is none.
+    pub line: u32,
+}
+
+/// A variable or block output that a person may watch and, by name, set.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Observed {
+    /// `name`, or `instance.member`.
+    pub name: String,
+    /// Where its value is. Two variables at one address share a slot.
+    pub slot: SlotId,
+}
+
+/// A run of the image, in bytes from its start.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Extent {
+    /// All of it.
+    pub bytes: Range<u32>,
+    /// The part that holds BOOLs, each of which must be 0 or 1.
+    pub bools: Range<u32>,
+}
+
+/// The layout of an image.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Layout {
+    slots: Vec<Slot>,
+    observed: Vec<Observed>,
+    inputs: Vec<Extent>,
+    outputs: Vec<Range<u32>>,
+    retained: Vec<Range<u32>>,
+    size: u32,
+}
+
+/// The image would be larger than [`MAXIMUM_SIZE`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ImageTooLarge;
+
+impl Layout {
+    /// The slots, in the order in which they were asked for.
+    pub fn slots(&self) -> &[Slot] {
+        &self.slots
+    }
+
+    /// One slot.
+    pub fn slot(&self, id: SlotId) -> &Slot {
+        &self.slots[id.index()]
+    }
+
+    /// What can be watched, in declaration order: the columns of a trace.
+    pub fn observed(&self) -> &[Observed] {
+        &self.observed
+    }
+
+    /// The runs that are copied in before a scan: one, and one more for each earlier layout that was extended.
+    pub fn inputs(&self) -> &[Extent] {
+        &self.inputs
+    }
+
+    /// The runs that are copied out after a scan.
+    pub fn outputs(&self) -> &[Range<u32>] {
+        &self.outputs
+    }
+
+    /// The runs that are kept while the power is off.
+    pub fn retained(&self) -> &[Range<u32>] {
+        &self.retained
+    }
+
+    /// Bytes in all, [`TAIL_PADDING`] included: a multiple of [`ALIGNMENT`].
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// What names this layout: two with one hash have the same slots (name, type, part, retain) at the same offsets.
+    /// Initial values and source lines do not count. FNV-1a, 64 bits.
+    pub fn hash(&self) -> u64 {
+        let mut hash = Fnv::default();
+        hash.write(&self.size.to_le_bytes());
+        for slot in &self.slots {
+            hash.write(slot.name.as_bytes());
+            hash.write(&[0, slot.ty as u8, slot.area as u8, u8::from(slot.retain)]);
+            hash.write(&slot.offset.to_le_bytes());
+        }
+        hash.0
+    }
+
+    /// The bytes before the first scan: every slot at its initial value, padding zero.
+    pub fn initial_image(&self) -> Vec<u8> {
+        let mut image = vec![0; self.size as usize];
+        for slot in &self.slots {
+            slot.write(&mut image, slot.initial);
+        }
+        image
+    }
+}
+
+impl Slot {
+    /// The value in an image of this slot's layout. A BOOL is whether its byte is other than 0.
+    ///
+    /// # Panics
+    /// When the image is shorter than the layout.
+    pub fn read(&self, image: &[u8]) -> Value {
+        let at = self.offset as usize;
+        let bytes = &image[at..at + self.ty.size() as usize];
+        let mut wide = [0; 8];
+        let bits = if cfg!(target_endian = "little") {
+            wide[..bytes.len()].copy_from_slice(bytes);
+            u64::from_le_bytes(wide)
+        } else {
+            wide[8 - bytes.len()..].copy_from_slice(bytes);
+            u64::from_be_bytes(wide)
+        };
+        if self.ty == Elementary::Bool { Value::bool(bits != 0) } else { Value::from_bits(self.ty, bits) }
+    }
+
+    /// Puts a value into an image of this slot's layout; bits outside this slot's type are dropped.
+    ///
+    /// # Panics
+    /// When the image is shorter than the layout.
+    pub fn write(&self, image: &mut [u8], value: Value) {
+        let (at, size) = (self.offset as usize, self.ty.size() as usize);
+        let bits = canonical(self.ty, value.bits());
+        let bytes = &mut image[at..at + size];
+        if cfg!(target_endian = "little") {
+            bytes.copy_from_slice(&bits.to_le_bytes()[..size]);
+        } else {
+            bytes.copy_from_slice(&bits.to_be_bytes()[8 - size..]);
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xCBF2_9CE4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+        }
+    }
+}
+
+/// A slot of an earlier layout, as a map file tells it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct KeptSlot {
+    /// The name that a slot must have again.
+    pub name: String,
+    /// The type that it must have again.
+    pub ty: Elementary,
+    /// The part that it must belong to again.
+    pub area: Area,
+    /// Whether it must be retained again.
+    pub retain: bool,
+    /// Where it lies, aligned to its size.
+    pub offset: u32,
+}
+
+/// An earlier layout.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct EarlierLayout {
+    /// Its slots.
+    pub slots: Vec<KeptSlot>,
+    /// The runs that were copied in.
+    pub inputs: Vec<Extent>,
+    /// The runs that were copied out.
+    pub outputs: Vec<Range<u32>>,
+    /// The runs that were kept.
+    pub retained: Vec<Range<u32>>,
+    /// Its size in bytes.
+    pub size: u32,
+}
+
+impl From<&Layout> for EarlierLayout {
+    fn from(layout: &Layout) -> Self {
+        let kept = |slot: &Slot| KeptSlot {
+            name: slot.name.clone(),
+            ty: slot.ty,
+            area: slot.area,
+            retain: slot.retain,
+            offset: slot.offset,
+        };
+        Self {
+            slots: layout.slots.iter().map(kept).collect(),
+            inputs: layout.inputs.clone(),
+            outputs: layout.outputs.clone(),
+            retained: layout.retained.clone(),
+            size: layout.size,
+        }
+    }
+}
+
+/// Collects slots and then gives each its place.
+#[derive(Debug, Default)]
+pub struct LayoutBuilder {
+    slots: Vec<Slot>,
+    observed: Vec<Observed>,
+}
+
+impl LayoutBuilder {
+    /// An empty layout.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks for a slot. Its offset is given by [`LayoutBuilder::finish`]; the one passed in does not count.
+    pub fn slot(&mut self, slot: Slot) -> SlotId {
+        let id = SlotId(u32::try_from(self.slots.len()).unwrap_or(u32::MAX));
+        self.slots.push(slot);
+        id
+    }
+
+    /// Adds a name under which a slot can be watched and set.
+    pub fn observe(&mut self, name: impl Into<String>, slot: SlotId) {
+        self.observed.push(Observed { name: name.into(), slot });
+    }
+
+    /// Places every slot: where the earlier layout has it, else behind.
+    ///
+    /// # Errors
+    /// [`ImageTooLarge`] when there is no room.
+    pub fn finish(self, earlier: Option<&EarlierLayout>) -> Result<Layout, ImageTooLarge> {
+        let none = EarlierLayout::default();
+        let earlier = earlier.unwrap_or(&none);
+        let kept: HashMap<&str, &KeptSlot> = earlier.slots.iter().map(|slot| (slot.name.as_str(), slot)).collect();
+        let mut layout = Layout {
+            slots: self.slots,
+            observed: self.observed,
+            inputs: earlier.inputs.clone(),
+            outputs: earlier.outputs.clone(),
+            retained: earlier.retained.clone(),
+            size: 0,
+        };
+        let mut fresh = Vec::new();
+        for (index, slot) in layout.slots.iter_mut().enumerate() {
+            let same = |kept: &&&KeptSlot| (kept.ty, kept.area, kept.retain) == (slot.ty, slot.area, slot.retain);
+            match kept.get(slot.name.as_str()).filter(same) {
+                Some(kept) => slot.offset = kept.offset,
+                None => fresh.push(index),
+            }
+        }
+        // A stable sort: slots of one run and width keep the order of their declaration.
+        fresh.sort_by_key(|index| order(&layout.slots[*index]));
+        let mut end = u64::from(earlier.size);
+        let runs: Vec<u8> = fresh.iter().map(|index| run_of(&layout.slots[*index])).collect();
+        let mut start = 0;
+        for run in runs.chunk_by(|a, b| a == b) {
+            end = layout.place(&fresh[start..start + run.len()], end)?;
+            start += run.len();
+        }
+        let size = (end + u64::from(TAIL_PADDING)).next_multiple_of(u64::from(ALIGNMENT));
+        layout.size = u32::try_from(size).ok().filter(|size| *size <= MAXIMUM_SIZE).ok_or(ImageTooLarge)?;
+        join(&mut layout.outputs, earlier.outputs.len());
+        join(&mut layout.retained, earlier.retained.len());
+        Ok(layout)
+    }
+}
+
+/// The place of a slot's run in the image; the retained outputs and the retained memory lie side by side.
+fn run_of(slot: &Slot) -> u8 {
+    match (slot.area, slot.retain) {
+        (Area::Input, _) => 0,
+        (Area::Output, false) => 1,
+        (Area::Output, true) => 2,
+        (Area::Memory | Area::State, true) => 3,
+        (Area::Memory, false) => 4,
+        (Area::State, false) => 5,
+    }
+}
+
+fn order(slot: &Slot) -> (u8, bool, u32) {
+    (run_of(slot), slot.ty != Elementary::Bool, slot.ty.size())
+}
+
+impl Layout {
+    /// Places one run of slots behind `end` and notes what it is copied or kept for; gives the new end.
+    fn place(&mut self, run: &[usize], end: u64) -> Result<u64, ImageTooLarge> {
+        let mut at = end;
+        let (mut bools_end, mut start) = (None, None);
+        for index in run {
+            let slot = &mut self.slots[*index];
+            at = at.next_multiple_of(u64::from(slot.ty.size()));
+            start.get_or_insert(at);
+            slot.offset = u32::try_from(at).map_err(|_| ImageTooLarge)?;
+            at += u64::from(slot.ty.size());
+            if slot.ty == Elementary::Bool {
+                bools_end = Some(at);
+            }
+        }
+        let (Some(first), Some(start)) = (run.first(), start) else { return Ok(end) };
+        let offset = |at: u64| u32::try_from(at).map_err(|_| ImageTooLarge);
+        let bytes = offset(start)?..offset(at)?;
+        let bools = bytes.start..offset(bools_end.unwrap_or(start))?;
+        match (self.slots[*first].area, self.slots[*first].retain) {
+            (Area::Input, _) => self.inputs.push(Extent { bytes, bools }),
+            (Area::Output, retain) => {
+                if retain {
+                    self.retained.push(bytes.clone());
+                }
+                self.outputs.push(bytes);
+            }
+            (Area::Memory | Area::State, true) => self.retained.push(bytes),
+            (Area::Memory | Area::State, false) => {}
+        }
+        Ok(at)
+    }
+}
+
+/// Makes one run of those from `first` on: they were placed one behind the other, with only padding between.
+fn join(runs: &mut Vec<Range<u32>>, first: usize) {
+    if let (Some(start), Some(end)) = (runs.get(first).map(|run| run.start), runs.last().map(|run| run.end)) {
+        runs.truncate(first);
+        runs.push(start..end);
+    }
+}

@@ -1,0 +1,131 @@
+//! Source files and places in them.
+//!
+//! A [`Source`] is one file's text; a [`Span`] is a byte range of one. Everything that a person wrote keeps
+//! its span to the end, so that a diagnostic, a report or a generated comment can name the line.
+//! This module must never read a file: bytes come in from the caller.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::diagnostic::{Code, Diagnostic};
+
+/// The largest source, in bytes: 256 MiB, far above any drawing and well within [`Span`]'s 32 bits.
+pub const MAXIMUM_BYTES: usize = 256 << 20;
+
+/// A byte range of one source: `start` is included, `end` is not.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Span {
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    /// The range `start..end` in bytes.
+    pub fn new(start: usize, end: usize) -> Self {
+        let clamp = |offset: usize| u32::try_from(offset).unwrap_or(u32::MAX);
+        Self { start: clamp(start), end: clamp(end) }
+    }
+
+    /// The smallest span that covers both.
+    #[must_use]
+    pub fn to(self, other: Self) -> Self {
+        Self { start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
+
+    /// The span as a range for indexing.
+    pub fn range(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+impl fmt::Debug for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", self.start, self.end)
+    }
+}
+
+/// One source file: its name as the user gave it and its text, valid UTF-8 without a byte order mark.
+#[derive(Clone, Debug)]
+pub struct Source {
+    name: String,
+    text: String,
+    line_starts: Vec<u32>,
+}
+
+impl Source {
+    /// A source from text. Text above [`MAXIMUM_BYTES`] is for [`Source::decode`] to refuse.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let line_starts = std::iter::once(0)
+            .chain(
+                text.bytes()
+                    .enumerate()
+                    .filter(|(_, byte)| *byte == b'\n')
+                    .map(|(at, _)| Span::new(at + 1, at + 1).start),
+            )
+            .collect();
+        Self { name: name.into(), text, line_starts }
+    }
+
+    /// A source from a file's bytes.
+    ///
+    /// # Errors
+    /// A source that holds the readable part, with a diagnostic at the first bad byte, when the bytes are not
+    /// UTF-8, hold a NUL, or are more than [`MAXIMUM_BYTES`].
+    pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Result<Self, (Self, Diagnostic)> {
+        let name = name.into();
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+        if bytes.len() > MAXIMUM_BYTES {
+            let problem =
+                Diagnostic::new(Code::FileTooLarge, Span::default(), format!("this file has {} bytes", bytes.len()))
+                    .hint(format!("a source may have at most {MAXIMUM_BYTES} bytes"));
+            return Err((Self::new(name, ""), problem));
+        }
+        match std::str::from_utf8(bytes) {
+            Err(error) => {
+                let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).into_owned();
+                let at = Span::new(good.len(), good.len());
+                let problem =
+                    Diagnostic::new(Code::NotText, at, "a byte here is not UTF-8 text").hint("save the file as UTF-8");
+                Err((Self::new(name, good), problem))
+            }
+            Ok(text) => match text.find('\0') {
+                None => Ok(Self::new(name, text)),
+                Some(at) => {
+                    let problem = Diagnostic::new(Code::NotText, Span::new(at, at), "a NUL byte stands here")
+                        .hint("this looks like a binary file");
+                    Err((Self::new(name, &text[..at]), problem))
+                }
+            },
+        }
+    }
+
+    /// The name as the user gave it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text of one span; empty where the span is not of this source.
+    pub fn slice(&self, span: Span) -> &str {
+        self.text.get(span.range()).unwrap_or("")
+    }
+
+    /// The line (from 1) in which a byte stands.
+    pub fn line(&self, byte: u32) -> usize {
+        self.line_starts.partition_point(|start| *start <= byte)
+    }
+
+    /// The byte range of a line (from 0), its line break included; `None` past the last line.
+    pub fn line_range(&self, line: usize) -> Option<Range<usize>> {
+        let start = *self.line_starts.get(line)? as usize;
+        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |next| *next as usize);
+        Some(start..end)
+    }
+}
