@@ -5,3 +5,8 @@ use crate::source::Source;
 pub fn parse(_source: &Source) -> Parsed {
     unimplemented!()
 }
+
+/// Prints a program in its one canonical form.
+pub fn print(_program: &crate::ladder::Program) -> String {
+    unimplemented!()
+}
