@@ -22,7 +22,7 @@ pub(crate) use block::Instance;
 #[derive(Clone, Debug)]
 pub(crate) struct Activity {
     /// What the element is, as a coverage table names it.
-    pub kind: &'static str,
+    pub kind: String,
     /// How often it changed from one scan to the next.
     pub toggles: u64,
     last: Vec<bool>,

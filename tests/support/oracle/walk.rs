@@ -4,7 +4,7 @@
 //! element's memory is therefore found by counting.
 
 use rung::check::{Branch, Call, Circuit, Element, Wire};
-use rung::elementary::Value;
+use rung::elementary::{Elementary, Value};
 use rung::ladder::{CoilKind, ContactKind};
 
 use super::{Activity, Oracle};
@@ -92,11 +92,8 @@ impl Oracle<'_> {
         let seen = match element {
             Element::Call(call) => {
                 let outputs = &self.instance(call.instance).outputs;
-                let bools = call.block.outputs().iter().zip(outputs);
-                bools
-                    .filter(|(_, value)| value.ty() == rung::elementary::Elementary::Bool)
-                    .map(|(_, value)| value.is_true())
-                    .collect()
+                let bools = outputs.iter().filter(|value| value.ty() == Elementary::Bool);
+                bools.map(|value| value.is_true()).collect()
             }
             _ => vec![right],
         };
@@ -143,8 +140,8 @@ impl Oracle<'_> {
 }
 
 /// What a coverage table calls an element.
-fn kind(element: &Element) -> &'static str {
-    match element {
+fn kind(element: &Element) -> String {
+    let kind = match element {
         Element::Contact { kind: ContactKind::Open, .. } => "contact a",
         Element::Contact { kind: ContactKind::Closed, .. } => "contact /a",
         Element::Contact { kind: ContactKind::Rising, .. } => "contact ^a",
@@ -155,9 +152,11 @@ fn kind(element: &Element) -> &'static str {
         Element::Coil { kind: CoilKind::Reset, .. } => "coil (R a)",
         Element::Coil { kind: CoilKind::Rising, .. } => "coil (P a)",
         Element::Coil { kind: CoilKind::Falling, .. } => "coil (N a)",
+        Element::Call(call) if call.power_input.is_none() => return format!("{} with EN", call.block.name()),
         Element::Call(call) => call.block.name(),
         Element::Condition(_) => "condition {a}",
         Element::Assignment { .. } => "assignment {a := b}",
         Element::Parallel(_) => "parallel [a | b]",
-    }
+    };
+    kind.to_owned()
 }
