@@ -12,6 +12,10 @@ use crate::frontend::Parsed;
 use crate::ladder::{Comment, Name, Origin, Program, VariableClass};
 use crate::source::{Source, Span};
 
+/// How many bytes of clauses a file may copy to the names before them, for each byte that it has. Without a limit
+/// a long list of names with a long clause would take memory by the square of the file.
+const COPIES_PER_BYTE: usize = 16;
+
 /// A syntax error that was reported: the declaration or rung around it is given up.
 pub(super) struct GivenUp;
 
@@ -68,7 +72,7 @@ impl<'a> Parser<'a> {
             diagnostics: Vec::new(),
             depth: 0,
             too_deep: false,
-            copies_left: source.text().len() + (1 << 16),
+            copies_left: COPIES_PER_BYTE * source.text().len() + (1 << 16),
             gap: Gap { settled: 0, room: false },
         };
         parser.advance();
