@@ -7,6 +7,7 @@
 
 pub mod check;
 pub mod diagnostic;
+pub mod draw;
 pub mod elementary;
 pub mod engine;
 pub mod frontend;
