@@ -12,8 +12,8 @@ use crate::ladder::{Comment, Program, Rung, Variable, VariableClass};
 const HEADINGS: [&str; 6] = ["class", "name", "type", "address", "initial", "retain"];
 /// The widest that a column of the declarations may be.
 const WIDEST_COLUMN: usize = 48;
-/// The narrowest that one may become to make room.
-const NARROWEST_COLUMN: usize = 4;
+/// The narrowest that one may become to make room: no heading is wider.
+const NARROWEST_COLUMN: usize = 7;
 /// Columns between the columns of the declarations.
 const GAP: usize = 2;
 /// Columns of a rung that a cell cannot have: rails, boundaries and the marks where the rung is folded.
@@ -21,8 +21,6 @@ const MARGINS: usize = 8;
 
 /// A program laid out.
 pub(super) struct Page {
-    /// The columns that it was laid out for.
-    pub(super) width: usize,
     /// The program's name, cut to the width.
     pub(super) title: String,
     pub(super) declarations: Table,
@@ -33,7 +31,8 @@ pub(super) struct Page {
 pub(super) struct Table {
     /// Where each column starts, in columns.
     pub(super) starts: Vec<usize>,
-    /// The headings, then one row a declaration; no rows for no declarations.
+    /// The headings, then one row a declaration; no rows for no declarations. Where there is no room for columns,
+    /// one column of lines without a heading.
     pub(super) rows: Vec<Vec<String>>,
 }
 
@@ -76,7 +75,7 @@ impl Page {
             })
             .collect();
         let title = label::cut_end(&format!("program {}", program.name.text), width);
-        Self { width, title, declarations: Table::of(&program.variables, width), rungs }
+        Self { title, declarations: Table::of(&program.variables, width), rungs }
     }
 }
 
@@ -169,7 +168,7 @@ impl Table {
         while widths.iter().sum::<usize>() + gaps > width {
             match widths.iter_mut().max() {
                 Some(widest) if *widest > NARROWEST_COLUMN => *widest -= 1,
-                _ => break,
+                _ => return Self::without_columns(&rows[1..], width),
             }
         }
         let mut starts = Vec::new();
@@ -183,6 +182,13 @@ impl Table {
             cells.map(|(column, width)| label::cut_name(&row[*column], *width)).collect()
         };
         Self { starts, rows: rows.into_iter().map(cut).collect() }
+    }
+
+    /// The declarations as lines, for a width that has no room for columns.
+    fn without_columns(rows: &[[String; 6]], width: usize) -> Self {
+        let words = |row: &[String; 6]| row.iter().filter(|cell| !cell.is_empty()).cloned().collect::<Vec<_>>();
+        let lines = rows.iter().flat_map(|row| wrap(&words(row).join(" "), width - GAP));
+        Self { starts: vec![GAP], rows: lines.map(|line| vec![line]).collect() }
     }
 }
 

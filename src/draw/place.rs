@@ -40,6 +40,8 @@ pub(super) fn picture(mut grids: Vec<Grid>, columns: usize) -> Option<Picture> {
 struct Strips {
     /// For each strip, its first row in the grid and that row's place in the picture.
     tops: Vec<(usize, usize)>,
+    /// For each strip, the number of the first wire that leaves it: no number comes twice in a network.
+    first_numbers: Vec<usize>,
     /// The first row below all strips.
     end: usize,
 }
@@ -59,18 +61,23 @@ impl Strips {
         for vertical in &grid.verticals {
             mark(grid.strip_at(vertical.side), vertical.top, vertical.bottom);
         }
+        let mut leaving = vec![0; grid.strips()];
         for wire in &grid.wires {
-            for strip in grid.strip_at(wire.from)..=grid.strip_at(wire.to) {
+            let (first, last) = (grid.strip_at(wire.from), grid.strip_at(wire.to));
+            for strip in first..=last {
                 mark(strip, wire.row, wire.row);
+                leaving[strip] += usize::from(strip < last);
             }
         }
+        let mut number = 0;
+        let first_numbers = leaving.into_iter().map(|count| (number, number += count).0).collect();
         let mut end = top;
         let tops = used.into_iter().map(|(first, last)| {
             let place = end;
             end += last.saturating_sub(first).max(1);
             (if first == usize::MAX { 0 } else { first }, place)
         });
-        Self { tops: tops.collect(), end }
+        Self { tops: tops.collect(), first_numbers, end }
     }
 
     fn place(&self, strip: usize, row: usize) -> usize {
@@ -108,7 +115,7 @@ impl Placer {
                 bottom: strips.place(strip, vertical.bottom),
             });
         }
-        let mut crossings = vec![0; grid.strips()];
+        let mut next = strips.first_numbers.clone();
         for wire in &grid.wires {
             let (first, last) = (grid.strip_at(wire.from), grid.strip_at(wire.to));
             for strip in first..=last {
@@ -116,12 +123,12 @@ impl Placer {
                 let mut from = middle(grid.column_at(wire.from));
                 let mut to = middle(grid.column_at(wire.to));
                 if strip > first {
-                    self.shapes.push(Shape::Returns { x: 1, y, number: crossings[strip - 1] - 1 });
+                    self.shapes.push(Shape::Returns { x: 1, y, number: next[strip - 1] - 1 });
                     from = 2 * RETURNED;
                 }
                 if strip < last {
-                    self.shapes.push(Shape::Leaves { x: self.rail - 2, y, number: crossings[strip] });
-                    crossings[strip] += 1;
+                    self.shapes.push(Shape::Leaves { x: self.rail - 2, y, number: next[strip] });
+                    next[strip] += 1;
                     to = 2 * (self.rail - 2);
                 }
                 self.wire(y, from, to);
@@ -129,7 +136,11 @@ impl Placer {
         }
         for (cell, row, symbol) in grid.symbols.drain(..) {
             let y = strips.place(grid.strip[cell], row);
-            self.symbol(symbol, Cell { left: grid.left[cell], columns: grid.columns[cell], right: grid.right[cell] }, y);
+            self.symbol(
+                symbol,
+                Cell { left: grid.left[cell], columns: grid.columns[cell], right: grid.right[cell] },
+                y,
+            );
         }
     }
 
@@ -192,7 +203,7 @@ impl Placer {
 
     fn block(&mut self, block: BlockBox, x: usize, y: usize) {
         let (columns, rows) = (block.box_columns, block.rows());
-        let centred = |text: &str| x + (columns - label::width(text)) / 2;
+        let centred = |text: &str| (2 * x + columns).saturating_sub(label::width(text)) / 2;
         let (name_x, type_x) = (centred(&block.instance), centred(&block.type_name));
         self.shapes.push(Shape::Frame { x, y: y - 2, columns, rows: rows + 3 });
         self.text(name_x, y - 3, block.instance, Align::Middle, Role::Name);

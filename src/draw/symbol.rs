@@ -19,6 +19,8 @@ const LEAST_COLUMNS: usize = 7;
 pub(super) struct Limits {
     /// A name above a contact, a coil or a block.
     pub(super) name: usize,
+    /// The type of a block.
+    pub(super) type_name: usize,
     /// An expression in a box.
     pub(super) expression: usize,
     /// What is written beside a pin.
@@ -32,6 +34,7 @@ impl Limits {
     pub(super) fn within(columns: usize) -> Self {
         Self {
             name: columns.saturating_sub(2).clamp(4, 36),
+            type_name: (columns / 3).clamp(6, 24),
             expression: columns.saturating_sub(6).clamp(4, 60),
             pin: (columns.saturating_sub(16) / 2).clamp(6, 28),
             pin_name: (columns / 5).clamp(4, 16),
@@ -74,8 +77,6 @@ pub(super) struct BlockBox {
     pub(super) left_columns: usize,
     /// Columns of the box, borders included.
     pub(super) box_columns: usize,
-    /// Columns right of the box.
-    pub(super) right_columns: usize,
 }
 
 impl BlockBox {
@@ -153,20 +154,23 @@ impl Symbol {
             call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| types.type_of(&call.instance.text));
         let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
         let instance = label::cut_name(&call.instance.text, limits.name);
-        let type_name = label::cut_name(type_name.unwrap_or("?"), limits.name);
+        let type_name = label::cut_name(type_name.unwrap_or("?"), limits.type_name);
 
         let widest = |pins: &[PinLabel], text: fn(&PinLabel) -> &str| {
             pins.iter().map(|pin| label::width(text(pin))).max().unwrap_or(0)
         };
-        let names = widest(&left, |pin| &pin.name) + 2 + widest(&right, |pin| &pin.name);
-        let box_columns = names.max(label::width(&type_name) + 2).max(label::width(&instance)) + 2;
         // Beside a text: the pin's wire and a blank.
         let left_columns = (widest(&left, |pin| &pin.wired) + 2).max(2);
         let right_columns = match widest(&right, |pin| &pin.wired) {
             0 => 2,
             text => text + 3,
         };
-        let block = BlockBox { instance, type_name, left, right, left_columns, box_columns, right_columns };
+        let names = widest(&left, |pin| &pin.name) + 2 + widest(&right, |pin| &pin.name);
+        // The instance's name may reach over what stands at both sides of the box.
+        let overhang = 2 * left_columns.min(right_columns);
+        let below_instance = label::width(&instance).saturating_sub(overhang);
+        let box_columns = names.max(label::width(&type_name) + 2).max(below_instance) + 2;
+        let block = BlockBox { instance, type_name, left, right, left_columns, box_columns };
         Self {
             columns: left_columns + box_columns + right_columns,
             above: 3,

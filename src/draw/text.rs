@@ -22,7 +22,7 @@ const NUMBERS: &str = "①②③④⑤⑥⑦⑧⑨⑩⑪⑫⑬⑭⑮⑯⑰⑱⑲
 pub(super) fn render(page: &Page) -> String {
     let mut out = String::new();
     line(&mut out, &page.title);
-    table(&mut out, &page.declarations, page.width);
+    table(&mut out, &page.declarations);
     for rung in &page.rungs {
         line(&mut out, "");
         heading(&mut out, rung);
@@ -48,7 +48,7 @@ fn heading(out: &mut String, rung: &RungPicture) {
     }
 }
 
-fn table(out: &mut String, table: &Table, width: usize) {
+fn table(out: &mut String, table: &Table) {
     if !table.rows.is_empty() {
         line(out, "");
     }
@@ -59,7 +59,7 @@ fn table(out: &mut String, table: &Table, width: usize) {
             text.extend(std::iter::repeat_n(' ', blanks));
             text.push_str(cell);
         }
-        line(out, &label::cut_end(text.trim_end(), width));
+        line(out, &text);
     }
 }
 
