@@ -16,6 +16,8 @@ const WIDEST_COLUMN: usize = 48;
 const NARROWEST_COLUMN: usize = 7;
 /// Columns between the columns of the declarations.
 const GAP: usize = 2;
+/// Columns that lines of prose may take whatever the width of the rungs.
+const READABLE: usize = 76;
 /// Columns of a rung that a cell cannot have: rails, boundaries and the marks where the rung is folded.
 const MARGINS: usize = 8;
 
@@ -61,6 +63,8 @@ impl Page {
         // All right rails stand in one column, but for rungs with an element too wide for the page.
         let fitting = grids.iter().flatten().map(Grid::total_columns).filter(|columns| *columns <= width);
         let columns = fitting.max().unwrap_or(0);
+        // Prose is not drawn out far beyond the rungs.
+        let prose = columns.max(READABLE).min(width);
         let mut comments = Comments { rest: &program.comments, from: declarations_end(program) };
         let rungs = program
             .rungs
@@ -68,8 +72,8 @@ impl Page {
             .zip(grids)
             .enumerate()
             .map(|(index, (rung, grids))| RungPicture {
-                comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, width - 3)).collect(),
-                heading: heading(rung, index, width),
+                comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, prose - 3)).collect(),
+                heading: heading(rung, index, prose),
                 enabled: rung.enabled,
                 picture: picture(grids, columns).ok_or_else(|| label::cut_end("(too large to draw)", width)),
             })

@@ -64,10 +64,8 @@ impl Strips {
         let mut leaving = vec![0; grid.strips()];
         for wire in &grid.wires {
             let (first, last) = (grid.strip_at(wire.from), grid.strip_at(wire.to));
-            for strip in first..=last {
-                mark(strip, wire.row, wire.row);
-                leaving[strip] += usize::from(strip < last);
-            }
+            (first..=last).for_each(|strip| mark(strip, wire.row, wire.row));
+            leaving[first..last].iter_mut().for_each(|count| *count += 1);
         }
         let mut number = 0;
         let first_numbers = leaving.into_iter().map(|count| (number, number += count).0).collect();
@@ -168,7 +166,7 @@ impl Placer {
                 self.wire(y, middle(left), middle(frame));
                 self.wire(y, middle(frame + width + 3), middle(right));
                 self.shapes.push(Shape::Frame { x: frame, y: y - 1, columns: width + 4, rows: 3 });
-                self.text(frame + 2, y, text, Align::Middle, Role::Name);
+                self.text(2 * frame + width + 4, y, text, Align::Middle, Role::Name);
             }
             SymbolKind::NodeStart { text } => {
                 let width = label::width(&text);
@@ -196,39 +194,49 @@ impl Placer {
         let frame = x + (columns - FRAME) / 2;
         self.wire(y, middle(left), middle(frame));
         self.wire(y, middle(frame + FRAME - 1), middle(right));
-        let width = label::width(&name);
-        self.text(x + (columns - width) / 2, y - 1, name, Align::Middle, Role::Name);
+        // The name's own middle may lie half a column off the frame's.
+        let start = x + (columns - label::width(&name)) / 2;
+        self.text_at(start, y - 1, name, 2 * frame + FRAME, Align::Middle, Role::Name);
         frame
     }
 
     fn block(&mut self, block: BlockBox, x: usize, y: usize) {
         let (columns, rows) = (block.box_columns, block.rows());
-        let centred = |text: &str| (2 * x + columns).saturating_sub(label::width(text)) / 2;
-        let (name_x, type_x) = (centred(&block.instance), centred(&block.type_name));
+        let centre = 2 * x + columns;
         self.shapes.push(Shape::Frame { x, y: y - 2, columns, rows: rows + 3 });
-        self.text(name_x, y - 3, block.instance, Align::Middle, Role::Name);
-        self.text(type_x, y - 1, block.type_name, Align::Middle, Role::Type);
+        self.text(centre, y - 3, block.instance, Align::Middle, Role::Instance);
+        self.text(centre, y - 1, block.type_name, Align::Middle, Role::Type);
         for (row, pin) in block.left.into_iter().enumerate() {
-            self.text(x + 1, y + row, pin.name, Align::Left, Role::Pin);
+            self.text(2 * (x + 1), y + row, pin.name, Align::Left, Role::Pin);
             if !pin.wired.is_empty() {
                 self.wire(y + row, 2 * (x - 1), middle(x));
-                self.text(x - 1 - label::width(&pin.wired), y + row, pin.wired, Align::Right, Role::Wired);
+                self.text(2 * (x - 1), y + row, pin.wired, Align::Right, Role::Wired);
             }
         }
         let end = x + columns - 1;
         for (row, pin) in block.right.into_iter().enumerate() {
-            self.text(end - label::width(&pin.name), y + row, pin.name, Align::Right, Role::Pin);
+            self.text(2 * end, y + row, pin.name, Align::Right, Role::Pin);
             if !pin.wired.is_empty() {
                 self.wire(y + row, middle(end), 2 * (end + 2));
-                self.text(end + 3, y + row, pin.wired, Align::Left, Role::Wired);
+                self.text(2 * (end + 3), y + row, pin.wired, Align::Left, Role::Wired);
             }
         }
     }
 
-    fn text(&mut self, x: usize, y: usize, text: String, align: Align, role: Role) {
+    /// Writes a text with its left end, middle or right end at a place in halves.
+    fn text(&mut self, anchor: usize, y: usize, text: String, align: Align, role: Role) {
+        let columns = label::width(&text);
+        let x = match align {
+            Align::Left => anchor / 2,
+            Align::Middle => anchor.saturating_sub(columns) / 2,
+            Align::Right => (anchor / 2).saturating_sub(columns),
+        };
+        self.text_at(x, y, text, anchor, align, role);
+    }
+
+    fn text_at(&mut self, x: usize, y: usize, text: String, anchor: usize, align: Align, role: Role) {
         if !text.is_empty() {
-            let columns = label::width(&text);
-            self.shapes.push(Shape::Text { x, y, columns, text, align, role });
+            self.shapes.push(Shape::Text { x, y, text, anchor, align, role });
         }
     }
 }

@@ -13,7 +13,7 @@ pub(super) struct Picture {
     pub(super) shapes: Vec<Shape>,
 }
 
-/// Where a text keeps its place when a renderer's letters are wider or narrower than its columns.
+/// Which part of a text keeps its place when a renderer's letters are wider or narrower than columns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Align {
     Left,
@@ -24,8 +24,10 @@ pub(super) enum Align {
 /// What a text is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Role {
-    /// The name of a variable or instance, or an expression.
+    /// The name of a variable, or an expression.
     Name,
+    /// The name of a block's instance.
+    Instance,
     /// The type of a block.
     Type,
     /// The name of a pin.
@@ -48,8 +50,9 @@ pub(super) enum Shape {
     Coil { x: usize, y: usize, mark: char },
     /// A frame through the middles of its outermost characters.
     Frame { x: usize, y: usize, columns: usize, rows: usize },
-    /// A text of so many columns.
-    Text { x: usize, y: usize, columns: usize, text: String, align: Align, role: Role },
+    /// A text from column `x`. A renderer whose letters have another width puts its left end, middle or right end
+    /// at `anchor`, in halves.
+    Text { x: usize, y: usize, text: String, anchor: usize, align: Align, role: Role },
     /// The connector of a node, `>name>`.
     Node { x: usize, y: usize, columns: usize, text: String },
     /// Two columns where a wire leaves a strip: an arrow and a number from 0.

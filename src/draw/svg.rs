@@ -29,7 +29,7 @@ text{font:13px ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace;fill:#11
 .wire,.sign,.frame,.rule{fill:none;stroke:#111;stroke-width:1.5}\
 .sign{stroke-width:2}\
 .rule{stroke:#999;stroke-width:1}\
-.rail{stroke:#111;stroke-width:4}\
+.rail{stroke:#111;stroke-width:3}\
 .node,.fold{fill:#fff;stroke:#111;stroke-width:1.2}\
 .off{opacity:.45}";
 
@@ -179,7 +179,7 @@ fn draw(group: Group, shape: &Shape) -> Group {
                 .set("x1", column_middle(*x))
                 .set("y1", top * ROW)
                 .set("x2", column_middle(*x))
-                .set("y2", bottom * ROW),
+                .set("y2", bottom * ROW + ROW / 4),
         ),
         Shape::Contact { x, y, mark } => {
             let (left, right, y) = (column_middle(*x), column_middle(x + 2), row_middle(*y));
@@ -211,19 +211,22 @@ fn draw(group: Group, shape: &Shape) -> Group {
                 .set("width", (columns - 1) * COLUMN)
                 .set("height", (rows - 1) * ROW),
         ),
-        Shape::Text { x, y, columns, text, align, role } => {
-            let (anchor, at) = match align {
-                Align::Left => ("start", 2 * x),
-                Align::Middle => ("middle", 2 * x + columns),
-                Align::Right => ("end", 2 * (x + columns)),
+        Shape::Text { y, text, anchor, align, role, .. } => {
+            let (class, right, down) = match role {
+                Role::Name => ("name", 0.0, 0.0),
+                // Down to its box, whose upper side is the middle of a row.
+                Role::Instance => ("name", 0.0, units(ROW) / 4.0),
+                Role::Type => ("type", 0.0, 0.0),
+                Role::Pin => ("pin", 0.0, 0.0),
+                // A little off its wire.
+                Role::Wired => ("wired", -3.0, 0.0),
             };
-            let class = match role {
-                Role::Name => "name",
-                Role::Type => "type",
-                Role::Pin => "pin",
-                Role::Wired => "wired",
+            let anchor_name = match align {
+                Align::Left => "start",
+                Align::Middle => "middle",
+                Align::Right => "end",
             };
-            group.add(words(class, half(at), row_middle(*y) + BASELINE, anchor, text))
+            group.add(words(class, half(*anchor) + right, row_middle(*y) + BASELINE + down, anchor_name, text))
         }
         Shape::Node { x, y, columns, text } => {
             let (left, right, y) = (units(x * COLUMN), units((x + columns) * COLUMN), row_middle(*y));

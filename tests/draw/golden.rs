@@ -118,162 +118,172 @@ fn a_whole_program_as_svg() {
 }
 
 #[test]
+fn everything_as_svg() {
+    let rungs = [element_rungs(), parallel_rungs(), block_rungs(), node_rungs(), wide_rungs()];
+    compare("everything.svg", &svg(&program("every<thing> & \"more\"", vec![], rungs.concat())));
+}
+
+#[test]
 fn each_kind_of_contact_and_coil() {
+    golden("elements", 100, element_rungs());
+}
+
+fn element_rungs() -> Vec<Rung> {
     let contacts = [ContactKind::Open, ContactKind::Closed, ContactKind::Rising, ContactKind::Falling];
     let coils =
         [CoilKind::Plain, CoilKind::Negated, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
-    golden(
-        "elements",
-        100,
-        vec![
-            rung("contacts", "", contacts.map(|kind| contact(kind, &format!("{kind:?}"))).to_vec()),
-            rung("coils", "", coils.map(|kind| coil(kind, &format!("{kind:?}"))).to_vec()),
-            rung("", "a rung without a name", vec![open("a"), out("b")]),
-            rung("wire", "", vec![]),
-            rung_of("empty", "", vec![]),
-            Rung { enabled: false, ..rung("resting", "checked, not run", vec![open("a"), out("b")]) },
-            rung(
-                "boxes",
-                "",
-                vec![
-                    condition(binary(
-                        BinaryOperator::And,
-                        binary(BinaryOperator::Less, read("speed"), number(10)),
-                        read("moving"),
-                    )),
-                    assignment("speed", binary(BinaryOperator::Add, read("speed"), number(1))),
-                ],
-            ),
-        ],
-    );
+    vec![
+        rung("contacts", "", contacts.map(|kind| contact(kind, &format!("{kind:?}"))).to_vec()),
+        rung("coils", "", coils.map(|kind| coil(kind, &format!("{kind:?}"))).to_vec()),
+        rung("", "a rung without a name", vec![open("a"), out("b")]),
+        rung("wire", "", vec![]),
+        rung_of("empty", "", vec![]),
+        Rung { enabled: false, ..rung("resting", "checked, not run", vec![open("a"), out("b")]) },
+        rung(
+            "boxes",
+            "",
+            vec![
+                condition(binary(
+                    BinaryOperator::And,
+                    binary(BinaryOperator::Less, read("speed"), number(10)),
+                    read("moving"),
+                )),
+                assignment("speed", binary(BinaryOperator::Add, read("speed"), number(1))),
+            ],
+        ),
+    ]
 }
 
 #[test]
 fn parallel_branches_inside_one_another() {
+    golden("parallels", 100, parallel_rungs());
+}
+
+fn parallel_rungs() -> Vec<Rung> {
     let inner = parallel(vec![vec![open("c")], vec![open("d"), closed("e")], vec![]]);
-    golden(
-        "parallels",
-        100,
-        vec![
-            rung(
-                "nested",
-                "",
-                vec![
-                    open("a"),
-                    parallel(vec![vec![open("b"), inner.clone(), open("f")], vec![open("g")]]),
-                    open("h"),
-                    out("y"),
-                ],
-            ),
-            rung(
-                "two_in_series",
-                "",
-                vec![
-                    parallel(vec![vec![open("a")], vec![open("b")]]),
-                    parallel(vec![vec![open("c")], vec![open("d")], vec![open("e")]]),
-                    out("y"),
-                ],
-            ),
-            rung("first_in_first", "", vec![parallel(vec![vec![inner], vec![open("z")]]), out("y")]),
-            rung(
-                "coils",
-                "several coils, and one behind a contact of its own",
-                vec![
-                    open("a"),
-                    parallel(vec![vec![out("x")], vec![open("b"), out("y")], vec![coil(CoilKind::Reset, "z")]]),
-                ],
-            ),
-            rung_of(
-                "from_rail_to_rail",
-                "",
-                vec![branch(vec![open("a"), out("x")]), branch(vec![open("b"), closed("c"), out("y")])],
-            ),
-        ],
-    );
+    vec![
+        rung(
+            "nested",
+            "",
+            vec![
+                open("a"),
+                parallel(vec![vec![open("b"), inner.clone(), open("f")], vec![open("g")]]),
+                open("h"),
+                out("y"),
+            ],
+        ),
+        rung(
+            "two_in_series",
+            "",
+            vec![
+                parallel(vec![vec![open("a")], vec![open("b")]]),
+                parallel(vec![vec![open("c")], vec![open("d")], vec![open("e")]]),
+                out("y"),
+            ],
+        ),
+        rung("first_in_first", "", vec![parallel(vec![vec![inner], vec![open("z")]]), out("y")]),
+        rung(
+            "coils",
+            "several coils, and one behind a contact of its own",
+            vec![
+                open("a"),
+                parallel(vec![vec![out("x")], vec![open("b"), out("y")], vec![coil(CoilKind::Reset, "z")]]),
+            ],
+        ),
+        rung_of(
+            "from_rail_to_rail",
+            "",
+            vec![branch(vec![open("a"), out("x")]), branch(vec![open("b"), closed("c"), out("y")])],
+        ),
+    ]
 }
 
 #[test]
 fn blocks_with_many_pins() {
-    golden(
-        "blocks",
-        100,
-        vec![
-            rung(
-                "up_and_down",
-                "every pin wired, the second output chosen",
-                vec![
-                    open("up"),
-                    chosen(
-                        "pieces",
-                        "CTUD",
-                        vec![
-                            ("CD", wired(vec![vec![closed("down"), open("b")]])),
-                            ("R", value(read("clear"))),
-                            ("LD", wired(vec![vec![open("load")], vec![open("reload_from_the_panel"), closed("off")]])),
-                            ("PV", value(number(100))),
-                            ("QU", to("full")),
-                            ("CV", to("count")),
-                        ],
-                        "QD",
-                    ),
-                    out("empty"),
-                ],
-            ),
-            rung(
-                "enabled",
-                "the first input is named, so that power goes to EN",
-                vec![
-                    open("a"),
-                    block("delay", "TON", vec![("IN", value(read("x"))), ("PT", value(seconds(90))), ("Q", to("y"))]),
-                    out("z"),
-                ],
-            ),
-            rung(
-                "unknown",
-                "a type that nobody declares, and a name longer than its box",
-                vec![open("a"), block("a_block_of_an_unknown_type", "", vec![("X", value(read("b")))])],
-            ),
-            rung(
-                "side_by_side",
-                "",
-                vec![parallel(vec![
-                    vec![block("t1", "TON", vec![("PT", value(seconds(1)))]), out("a")],
-                    vec![block("t2", "TOF", vec![("PT", value(seconds(2)))]), out("b")],
-                ])],
-            ),
-        ],
-    );
+    golden("blocks", 100, block_rungs());
+}
+
+fn block_rungs() -> Vec<Rung> {
+    vec![
+        rung(
+            "up_and_down",
+            "every pin wired, the second output chosen",
+            vec![
+                open("up"),
+                chosen(
+                    "pieces",
+                    "CTUD",
+                    vec![
+                        ("CD", wired(vec![vec![closed("down"), open("b")]])),
+                        ("R", value(read("clear"))),
+                        ("LD", wired(vec![vec![open("load")], vec![open("reload_from_the_panel"), closed("off")]])),
+                        ("PV", value(number(100))),
+                        ("QU", to("full")),
+                        ("CV", to("count")),
+                    ],
+                    "QD",
+                ),
+                out("empty"),
+            ],
+        ),
+        rung(
+            "enabled",
+            "the first input is named, so that power goes to EN",
+            vec![
+                open("a"),
+                block("delay", "TON", vec![("IN", value(read("x"))), ("PT", value(seconds(90))), ("Q", to("y"))]),
+                out("z"),
+            ],
+        ),
+        rung(
+            "unknown",
+            "a type that nobody declares, and a name longer than its box",
+            vec![open("a"), block("a_block_of_an_unknown_type", "", vec![("X", value(read("b")))])],
+        ),
+        rung(
+            "side_by_side",
+            "",
+            vec![parallel(vec![
+                vec![block("t1", "TON", vec![("PT", value(seconds(1)))]), out("a")],
+                vec![block("t2", "TOF", vec![("PT", value(seconds(2)))]), out("b")],
+            ])],
+        ),
+    ]
 }
 
 #[test]
 fn a_bridge_of_nodes() {
-    golden(
-        "nodes",
-        80,
-        vec![rung_of(
-            "bridge",
-            "five contacts that no tree of series and parallel holds",
-            vec![
-                node_branch("", vec![open("a")], "left"),
-                node_branch("", vec![open("b")], "right"),
-                node_branch("left", vec![open("middle")], "right"),
-                node_branch("left", vec![open("c")], "end"),
-                node_branch("right", vec![open("d")], "end"),
-                node_branch("end", vec![out("y")], ""),
-            ],
-        )],
-    );
+    golden("nodes", 80, node_rungs());
+}
+
+fn node_rungs() -> Vec<Rung> {
+    vec![rung_of(
+        "bridge",
+        "five contacts that no tree of series and parallel holds",
+        vec![
+            node_branch("", vec![open("a")], "left"),
+            node_branch("", vec![open("b")], "right"),
+            node_branch("left", vec![open("middle")], "right"),
+            node_branch("left", vec![open("c")], "end"),
+            node_branch("right", vec![open("d")], "end"),
+            node_branch("end", vec![out("y")], ""),
+        ],
+    )]
 }
 
 #[test]
 fn a_rung_wider_than_the_page_goes_on_below() {
+    golden("wrapped", 60, wide_rungs());
+}
+
+fn wide_rungs() -> Vec<Rung> {
     let contacts = |from: usize, to: usize| (from..to).map(|index| open(&format!("contact_{index}"))).collect();
     let mut long: Vec<_> = contacts(0, 9);
     long.push(out("lamp"));
     let mut with_branches = vec![parallel(vec![contacts(0, 8), vec![open("short")], contacts(20, 25)])];
     with_branches.push(block("delay", "TON", vec![("PT", value(seconds(3)))]));
     with_branches.push(parallel(vec![vec![out("x")], vec![out("y")]]));
-    golden("wrapped", 60, vec![rung("series", "", long), rung("parallel", "", with_branches)]);
+    vec![rung("series", "", long), rung("parallel", "", with_branches)]
 }
 
 #[test]
