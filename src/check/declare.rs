@@ -62,6 +62,7 @@ impl Checker<'_> {
         };
         let state = match (ty, class) {
             (None, _) => State::Broken,
+            (Some(Type::Block(_)), class) if class != VariableClass::Memory => State::Broken,
             (_, VariableClass::Constant) => State::Pending,
             _ => State::Known,
         };

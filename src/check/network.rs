@@ -45,7 +45,7 @@ pub(super) struct Walk {
     /// Nodes that were fed.
     fed: u32,
     /// Whether anything in it has an effect.
-    pub(super) active: bool,
+    active: bool,
     /// Whether a coil or an assignment may have power.
     conducts: bool,
     /// What keeps the power from the first coil or assignment that has none.
@@ -106,20 +106,21 @@ impl Checker<'_> {
     fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
         let mut walk = Walk::new(index, rung.enabled);
         let (circuit, _) = self.circuit(&rung.circuit, Power::Maybe, &mut walk);
-        for node in walk.nodes.values().filter(|node| node.used.is_none()) {
+        let mut unused: Vec<&Node> = walk.nodes.values().filter(|node| node.used.is_none()).collect();
+        unused.sort_by_key(|node| node.id.0);
+        for node in unused {
             let problem = Diagnostic::new(Code::NodeMisuse, node.span, "no branch starts at this node");
             self.report.push(problem.hint("its name at the start of a later branch continues from it"));
         }
-        let name = self.rung_name(index);
         if !walk.active {
-            let message = format!("{name} has no coil, block or assignment");
+            let message = format!("{} has no coil, block or assignment", self.rung_name(index));
             self.report.push(Diagnostic::new(Code::EmptyRung, rung.span, message));
         } else if let (false, Some(barrier)) = (walk.conducts, walk.barrier) {
-            let message = format!("{name} can never conduct: no power passes here");
+            let message = format!("{} can never conduct: no power passes here", self.rung_name(index));
             let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
             self.report.push(problem.hint("`rung off` keeps a rung from running"));
         }
-        let label = rung.name.as_ref().map_or(name, |name| name.text.clone());
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(index), |name| name.text.clone());
         model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
     }
 

@@ -1,7 +1,6 @@
 //! References: from a name or an address and what follows it to a place that is read or written.
 
 use super::address::Extent;
-
 use super::expression::constant as constant_expression;
 use super::model::{Expression, ExpressionKind, PinId, Place, Type, VariableId};
 use super::scope::State;

@@ -43,10 +43,15 @@ impl Checker<'_> {
     /// Reports what the whole program shows; unused names only if all of it could be seen.
     pub(super) fn check_usage(&mut self, complete: bool) {
         let usage = std::mem::take(&mut self.usage);
-        for coils in usage.coils.values() {
+        // In an order that does not depend on hashing: of too many findings the same ones are kept in every run.
+        let mut places: Vec<_> = usage.coils.iter().filter(|(_, coils)| coils.len() > 1).collect();
+        places.sort_by_key(|(place, _)| (place.variable, place.pin, place.bit));
+        for (_, coils) in places {
             self.check_coils(coils);
         }
-        for (id, calls) in &usage.calls {
+        let mut instances: Vec<_> = usage.calls.iter().filter(|(_, calls)| calls.len() > 1).collect();
+        instances.sort_by_key(|(id, _)| **id);
+        for (id, calls) in instances {
             self.check_calls(*id, calls);
         }
         if complete {
