@@ -5,3 +5,7 @@ use crate::source::Source;
 pub fn parse(_source: &Source) -> Parsed {
     unimplemented!()
 }
+/// Prints native text.
+pub fn print(_program: &crate::ladder::Program) -> String {
+    unimplemented!()
+}
