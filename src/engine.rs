@@ -4,5 +4,6 @@
 //! None holds code for a particular block, and all compute what [`evaluate`](crate::logic::evaluate) says.
 
 pub mod clif;
+pub mod disassemble;
 pub mod interp;
 pub mod jit;
