@@ -10,6 +10,7 @@ pub mod diagnostic;
 pub mod elementary;
 pub mod engine;
 pub mod frontend;
+pub mod generate;
 pub mod ladder;
 pub mod logic;
 pub mod lower;
