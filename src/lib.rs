@@ -6,7 +6,9 @@
 //! turns that into one straight-line scan of [`logic`], which [`opt`] improves and [`engine`] interprets or compiles.
 
 pub mod check;
+pub mod cli;
 pub mod diagnostic;
+pub mod draw;
 pub mod elementary;
 pub mod engine;
 pub mod frontend;

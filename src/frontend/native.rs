@@ -5,8 +5,7 @@ use crate::source::Source;
 pub fn parse(_source: &Source) -> Parsed {
     unimplemented!()
 }
-
-/// Prints a program in its one canonical form.
+/// Prints native text.
 pub fn print(_program: &crate::ladder::Program) -> String {
     unimplemented!()
 }

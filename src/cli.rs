@@ -1,0 +1,44 @@
+//! The `rung` command: one file per subcommand; this one parses, dispatches and holds what they share.
+//!
+//! With the runtime's host part this is the only place that does I/O. Nothing here may know how a program is
+//! parsed, lowered or run; and no output file may ever be left half-written.
+
+mod check;
+mod fmt;
+mod load;
+mod output;
+mod show;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub(crate) use load::{Loaded, load, load_checked, read_bytes};
+pub(crate) use output::{Failure, print, report, write_whole};
+
+/// A compiler and runtime for PLC ladder diagrams.
+#[derive(Debug, Parser)]
+#[command(name = "rung", version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Check(check::Arguments),
+    Fmt(fmt::Arguments),
+    Show(show::Arguments),
+}
+
+/// Runs the command that the process was started with, and gives its exit code: 0, or 1 when there was an error
+/// in what it was given, or 2 for a wrong command line.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match &arguments.command {
+        Command::Check(arguments) => check::run(arguments),
+        Command::Fmt(arguments) => fmt::run(arguments),
+        Command::Show(arguments) => show::run(arguments),
+    };
+    output::exit(result)
+}
