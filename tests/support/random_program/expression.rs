@@ -15,6 +15,11 @@ impl Generator {
         if depth == 0 || self.dice.percent(25) || self.place(ty, Purpose::ReadVariable).is_none() {
             return self.operand(ty);
         }
+        self.operation(ty, depth)
+    }
+
+    /// An operator of a type of which there is a variable, which is somewhere in it.
+    fn operation(&mut self, ty: Elementary, depth: usize) -> Expression {
         if ty == Elementary::Bool && self.dice.percent(55) {
             return self.comparison(depth);
         }
@@ -73,8 +78,8 @@ impl Generator {
 
     /// An expression whose type shows without what stands around it, and which is not constant where that can be.
     fn anchored(&mut self, ty: Elementary, depth: usize) -> Expression {
-        if depth > 0 && self.dice.percent(50) {
-            return self.expression(ty, depth);
+        if depth > 0 && self.dice.percent(50) && self.place(ty, Purpose::ReadVariable).is_some() {
+            return self.operation(ty, depth);
         }
         match self.readable(ty, Purpose::ReadVariable) {
             Some(reference) => drawing::expression(ExpressionKind::Read(reference)),
