@@ -17,4 +17,5 @@ pub mod ladder;
 pub mod logic;
 pub mod lower;
 pub mod opt;
+pub mod replay;
 pub mod source;
