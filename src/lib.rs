@@ -16,4 +16,6 @@ pub mod ladder;
 pub mod logic;
 pub mod lower;
 pub mod opt;
+pub mod simulate;
 pub mod source;
+pub mod trace;
