@@ -11,6 +11,8 @@ mod build;
 pub mod evaluate;
 pub mod image;
 mod op;
+#[doc(hidden)]
+pub mod random;
 
 pub use build::Builder;
 pub use image::{Area, Layout, LayoutBuilder, Slot, SlotId};
