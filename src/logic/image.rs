@@ -8,7 +8,12 @@
 //! With an earlier layout given, every slot of it keeps its offset, new ones are appended as a second group of
 //! the same order, and each run gets one more [`Extent`].
 
-use std::collections::HashMap;
+mod check;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
@@ -106,6 +111,42 @@ pub struct Layout {
 pub struct ImageTooLarge;
 
 impl Layout {
+    /// A layout of given parts, as a text tells them.
+    ///
+    /// # Errors
+    /// What is wrong with them: see [`EarlierLayout::problems`].
+    pub fn from_parts(
+        slots: Vec<Slot>,
+        observed: Vec<Observed>,
+        inputs: Vec<Extent>,
+        outputs: Vec<Range<u32>>,
+        retained: Vec<Range<u32>>,
+        size: u32,
+    ) -> Result<Self, Vec<String>> {
+        let layout = Self { slots, observed, inputs, outputs, retained, size };
+        let problems = layout.problems();
+        if problems.is_empty() { Ok(layout) } else { Err(problems) }
+    }
+
+    /// What is wrong with it, which of one that a [`LayoutBuilder`] made is nothing: all that
+    /// [`EarlierLayout::problems`] names; an initial value of another type; what is observed twice or is no slot.
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = EarlierLayout::from(self).problems();
+        for slot in self.slots.iter().filter(|slot| slot.initial.ty() != slot.ty) {
+            problems.push(format!("`{}` starts with {:?}, which is no {}", slot.name, slot.initial, slot.ty));
+        }
+        let mut names = HashSet::new();
+        for Observed { name, slot } in &self.observed {
+            if slot.index() >= self.slots.len() {
+                problems.push(format!("`{name}` shows {slot}, which is no slot"));
+            }
+            if !names.insert(name) {
+                problems.push(format!("`{name}` is observed twice"));
+            }
+        }
+        problems
+    }
+
     /// The slots, in the order in which they were asked for.
     pub fn slots(&self) -> &[Slot] {
         &self.slots
