@@ -17,5 +17,6 @@ pub mod logic;
 pub mod lower;
 pub mod opt;
 pub mod simulate;
+pub mod replay;
 pub mod source;
 pub mod trace;

@@ -66,14 +66,17 @@ fn front_ends_and_the_checker_look_only_backwards() {
     let later = ["crate::lower", "crate::logic", "crate::opt", "crate::engine"];
     let early: Vec<_> = naming("src", &later, &[])
         .into_iter()
-        .filter(|name| ["src/frontend", "src/ladder", "src/check", "src/draw"].iter().any(|stage| name.starts_with(stage)))
+        .filter(|name| {
+            ["src/frontend", "src/ladder", "src/check", "src/draw"].iter().any(|stage| name.starts_with(stage))
+        })
         .collect();
     assert_eq!(early, NONE);
 }
 
 #[test]
 fn only_the_command_and_the_host_runtime_do_input_output_or_read_clocks() {
-    let world = ["std::fs", "io::stdin", "io::stdout", "io::stderr", "Instant::now", "SystemTime", "std::net", "println!"];
+    let world =
+        ["std::fs", "io::stdin", "io::stdout", "io::stderr", "Instant::now", "SystemTime", "std::net", "println!"];
     assert_eq!(naming("src", &world, &["src/cli"]), NONE);
     assert_eq!(naming("runtime/src", &world, &["runtime/src/host"]), NONE);
 }
@@ -81,7 +84,10 @@ fn only_the_command_and_the_host_runtime_do_input_output_or_read_clocks() {
 #[test]
 fn unsafe_lives_only_where_the_design_allows() {
     assert_eq!(naming("src", &["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern"], &["src/engine/jit"]), NONE);
-    assert_eq!(naming("runtime/src", &["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern"], &["runtime/src/host"]), NONE);
+    assert_eq!(
+        naming("runtime/src", &["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern"], &["runtime/src/host"]),
+        NONE
+    );
 }
 
 #[test]
