@@ -16,7 +16,7 @@ pub mod ladder;
 pub mod logic;
 pub mod lower;
 pub mod opt;
-pub mod simulate;
 pub mod replay;
+pub mod simulate;
 pub mod source;
 pub mod trace;

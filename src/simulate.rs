@@ -1,7 +1,8 @@
 //! Simulation: a program run in virtual time, with the stimuli that set its variables.
 //!
-//! Scan k, from 0, happens at time k x cycle. Everything here is a pure function of program, stimuli and schedule:
-//! this module must never do I/O or read a clock, so that the same files give the same trace on every engine.
+//! Scan k, from 0, happens at time k x cycle, or when a replay says. Everything here is a pure function of program,
+//! stimuli and schedule: this module must never do I/O or read a clock, so that the same files give the same trace on
+//! every engine.
 //!
 //! ```no_run
 //! # use rung::{engine::interp::Interpreter, logic::Program, simulate::{Schedule, Simulation, Stimuli}};
@@ -22,6 +23,7 @@ mod tests;
 use rung_runtime::Scan;
 
 use crate::logic::Layout;
+use crate::replay::Replay;
 
 pub use stimuli::{Row, Setting, Stimuli};
 
@@ -84,11 +86,16 @@ impl Schedule {
 #[derive(Debug)]
 pub struct Simulation<'a> {
     layout: &'a Layout,
-    stimuli: &'a Stimuli,
-    schedule: Schedule,
+    course: Course<'a>,
     image: Vec<u8>,
     scans_done: u64,
-    rows_done: usize,
+}
+
+/// Where times and inputs come from.
+#[derive(Debug)]
+enum Course<'a> {
+    Stimulated { stimuli: &'a Stimuli, schedule: Schedule, rows_done: usize },
+    Replayed(&'a Replay),
 }
 
 impl<'a> Simulation<'a> {
@@ -96,23 +103,41 @@ impl<'a> Simulation<'a> {
     ///
     /// The stimuli must have been read for this layout.
     pub fn new(layout: &'a Layout, stimuli: &'a Stimuli, schedule: Schedule) -> Self {
-        Self { layout, stimuli, schedule, image: layout.initial_image(), scans_done: 0, rows_done: 0 }
+        let course = Course::Stimulated { stimuli, schedule, rows_done: 0 };
+        Self { layout, course, image: layout.initial_image(), scans_done: 0 }
     }
 
-    /// Applies the stimuli that are due, in order, and runs one scan; gives its time in nanoseconds, or `None` when
-    /// all scans are done.
+    /// A recorded run, from its start.
+    ///
+    /// [`Replay::check`] must have passed for this layout.
+    pub fn replaying(layout: &'a Layout, replay: &'a Replay) -> Self {
+        Self { layout, course: Course::Replayed(replay), image: replay.first_image(layout), scans_done: 0 }
+    }
+
+    /// Sets what is due, in order, and runs one scan; gives its time in nanoseconds, or `None` when all scans are
+    /// done.
     pub fn step(&mut self, scan: &mut (impl Scan + ?Sized)) -> Option<i64> {
-        if self.scans_done == self.schedule.scans {
-            return None;
-        }
-        // In range: the schedule was made so that its last scan's time is.
-        let now = i64::try_from(self.scans_done).ok()?.checked_mul(self.schedule.cycle)?;
-        while let Some(row) = self.stimuli.row(self.rows_done).filter(|row| row.time <= now) {
-            for setting in row.settings {
-                self.layout.slot(setting.slot).write(&mut self.image, setting.value);
+        let now = match &mut self.course {
+            Course::Stimulated { stimuli, schedule, rows_done } => {
+                if self.scans_done == schedule.scans {
+                    return None;
+                }
+                // In range: the schedule was made so that its last scan's time is.
+                let now = i64::try_from(self.scans_done).ok()?.checked_mul(schedule.cycle)?;
+                while let Some(row) = stimuli.row(*rows_done).filter(|row| row.time <= now) {
+                    for setting in row.settings {
+                        self.layout.slot(setting.slot).write(&mut self.image, setting.value);
+                    }
+                    *rows_done += 1;
+                }
+                now
             }
-            self.rows_done += 1;
-        }
+            Course::Replayed(replay) => {
+                let recorded = replay.scans.get(usize::try_from(self.scans_done).ok()?)?;
+                recorded.copy_in(self.layout, &mut self.image);
+                recorded.now
+            }
+        };
         scan.scan(&mut self.image, now);
         self.scans_done += 1;
         Some(now)

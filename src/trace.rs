@@ -17,7 +17,7 @@ use crate::logic::{Area, Layout, Slot};
 use crate::simulate::decimal::Milliseconds;
 
 pub use self::csv::CsvTrace;
-pub use self::svg::SvgTrace;
+pub use self::svg::{Period, SvgTrace};
 pub use self::vcd::VcdTrace;
 
 /// A trace that is being recorded.

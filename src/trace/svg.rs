@@ -52,31 +52,52 @@ const STYLE: &str = "text { font-family: 'DejaVu Sans Mono', Menlo, Consolas, mo
 .wave { stroke-width: 1.6; fill: none; stroke-linejoin: round }
 .fill { fill-opacity: 0.13; stroke: none }";
 
+impl Period {
+    /// The period of scans at these times, in nanoseconds: from the first to as long after the last as the first two
+    /// are apart, or a millisecond.
+    pub fn of(mut times: impl DoubleEndedIterator<Item = i64>) -> Self {
+        let start = times.next().unwrap_or(0);
+        let cycle = times.next().map_or(1_000_000, |second| second.saturating_sub(start).max(1));
+        let last = times.next_back().unwrap_or(start.saturating_add(cycle));
+        Self { start, end: last.saturating_add(cycle), cycle }
+    }
+}
+
 /// Collects what is recorded and draws it at the end.
 #[derive(Debug)]
 pub struct SvgTrace<W> {
     title: String,
     lanes: Vec<Lane>,
-    cycle: i64,
-    end: i64,
+    period: Period,
     out: W,
 }
 
+/// The stretch of time that a diagram shows, in nanoseconds.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Period {
+    /// The left end of the axis, not after the first scan.
+    pub start: i64,
+    /// The right end: the value after the last scan is drawn up to there.
+    pub end: i64,
+    /// The usual time from one scan to the next.
+    pub cycle: i64,
+}
+
 impl<W: Write> SvgTrace<W> {
-    /// A diagram of these signals from 0 to `end`, recorded every `cycle` nanoseconds, with a title.
-    pub fn new(title: &str, signals: Vec<Signal>, cycle: i64, end: i64, out: W) -> Self {
-        let shortest = end / SHORTEST_PARTS;
+    /// A diagram of these signals over a period, with a title.
+    pub fn new(title: &str, signals: Vec<Signal>, period: Period, out: W) -> Self {
+        let shortest = period.end.saturating_sub(period.start) / SHORTEST_PARTS;
         let lanes = signals.into_iter().map(|signal| Lane::new(signal, shortest)).collect();
-        Self { title: title.to_owned(), lanes, cycle, end, out }
+        Self { title: title.to_owned(), lanes, period, out }
     }
 
     fn draw(&self) -> Document {
         let names = self.lanes.iter().map(|lane| short_name(lane.signal.name()).width()).max().unwrap_or(0);
         let left = (MARGIN + 14.0 + names as f64 * NAME_ADVANCE + 14.0).ceil();
-        let axis = Axis::new(left, PLOT_WIDTH, self.end);
+        let axis = Axis::new(left, PLOT_WIDTH, &self.period);
         let bottom = TOP + self.lanes.iter().map(wave::height).sum::<f64>();
         let many = self.lanes.len() >= MANY_LANES;
-        let (width, height) = (left + PLOT_WIDTH + MARGIN + 16.0, bottom + 30.0 + MARGIN);
+        let (width, height) = (left + PLOT_WIDTH + MARGIN + 30.0, bottom + 30.0 + MARGIN);
 
         let mut document = Document::new()
             .set("width", width)
@@ -111,7 +132,7 @@ impl<W: Write> SvgTrace<W> {
                 .set("y1", px(top + lane_height))
                 .set("y2", px(top + lane_height));
             document = document.add(separator).add(marker).add(name);
-            document = document.add(wave::draw(lane, &axis, top, self.cycle));
+            document = document.add(wave::draw(lane, &axis, top, self.period.cycle));
             top += lane_height;
         }
         document
@@ -151,7 +172,7 @@ impl<W: Write> Trace for SvgTrace<W> {
 
     fn finish(&mut self) -> io::Result<()> {
         for lane in &mut self.lanes {
-            lane.finish(self.end);
+            lane.finish(self.period.end);
         }
         writeln!(self.out, "{}", self.draw())?;
         self.out.flush()

@@ -2,7 +2,7 @@
 
 use svg::node::element::{Group, Line, Path};
 
-use super::{px, text};
+use super::{Period, px, text};
 use crate::simulate::decimal::Scaled;
 
 /// Ticks that an axis has at most.
@@ -18,36 +18,44 @@ const UNITS: [(&str, i64, i64); 6] = [
     ("h", 3_600_000_000_000, 3_600_000_000_000),
 ];
 
-/// An axis from 0 to its end.
+/// An axis over a period.
 #[derive(Debug)]
 pub(super) struct Axis {
     left: f64,
     width: f64,
-    /// Nanoseconds, above 0.
-    end: i64,
+    start: i64,
+    /// From the start to the right end, above 0.
+    length: i64,
     /// Nanoseconds between ticks.
     step: i64,
     unit: (&'static str, i64),
 }
 
 impl Axis {
-    pub(super) fn new(left: f64, width: f64, end: i64) -> Self {
-        let end = end.max(1);
+    pub(super) fn new(left: f64, width: f64, period: &Period) -> Self {
+        let (start, length) = (period.start, period.end.saturating_sub(period.start).max(1));
         // Two of a unit, so that the numbers are not all below 1; minutes and hours, which are not decimal, later.
-        let fits = |unit: &&(&str, i64, i64)| end / unit.1 >= if unit.2 == 1 { 2 } else { 10 };
+        let fits = |unit: &&(&str, i64, i64)| length / unit.1 >= if unit.2 == 1 { 2 } else { 10 };
         let (name, unit, finest) = *UNITS.iter().rev().find(fits).unwrap_or(&UNITS[0]);
         let steps = (0..19u32).flat_map(|power| [1, 2, 5].map(|digit| i128::from(finest) * digit * 10i128.pow(power)));
-        let step = steps.into_iter().find(|step| i128::from(end) / step <= MOST_TICKS).unwrap_or(i128::from(end));
-        Self { left, width, end, step: i64::try_from(step).unwrap_or(i64::MAX), unit: (name, unit) }
+        let step = steps.into_iter().find(|step| i128::from(length) / step <= MOST_TICKS).unwrap_or(i128::from(length));
+        Self { left, width, start, length, step: i64::try_from(step).unwrap_or(i64::MAX), unit: (name, unit) }
     }
 
     /// The place of a time, in pixels.
     pub(super) fn x(&self, time: i64) -> f64 {
-        self.left + self.width * (time as f64 / self.end as f64)
+        self.left + self.width * (time.saturating_sub(self.start) as f64 / self.length as f64)
+    }
+
+    /// The place of its left end, in pixels.
+    pub(super) fn left(&self) -> f64 {
+        self.left
     }
 
     fn ticks(&self) -> impl Iterator<Item = i64> {
-        (0..=self.end / self.step).map(|index| index * self.step)
+        let first = self.start.div_euclid(self.step) + i64::from(self.start.rem_euclid(self.step) != 0);
+        let last = self.start.saturating_add(self.length).div_euclid(self.step);
+        (first..=last).map(|index| index * self.step)
     }
 
     /// Light lines from top to bottom at the ticks.
@@ -71,10 +79,8 @@ impl Axis {
             let number = text(&self.label(time), x, baseline).set("class", "small").set("text-anchor", "middle");
             group = group.add(number);
         }
-        let unit = text(&format!("t/{}", self.unit.0), right + 16.0, if above { y - 6.0 } else { y + 14.0 });
-        group
-            .add(Path::new().set("class", "axis").set("d", lines))
-            .add(unit.set("class", "small").set("text-anchor", "middle"))
+        let unit = text(self.unit.0, right + 20.0, y + 3.5).set("class", "small");
+        group.add(Path::new().set("class", "axis").set("d", lines)).add(unit)
     }
 
     fn label(&self, time: i64) -> String {

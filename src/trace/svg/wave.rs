@@ -148,7 +148,7 @@ impl Band<'_> {
             draw_to(&mut line, 'L', &[end, y(to)]);
             let next = lane.pieces.get(index + 1);
             // A rise that stays where it arrived took the preset time.
-            let stays = next.is_some_and(|next| matches!(next.shape, Shape::Level(_)) && next.end - next.start > cycle);
+            let stays = next.is_some_and(|next| matches!(next.shape, Shape::Level(_)) && next.end.saturating_sub(next.start) > cycle);
             if let Shape::Ramp { from: 0, to, .. } = piece.shape
                 && stays
             {
@@ -164,7 +164,7 @@ impl Band<'_> {
         }
         if lane.signal.ty() != Elementary::Time {
             for (number, y) in [(lane.greatest, self.high + 4.0), (least, self.low + 4.0)] {
-                let label = text(&number.to_string(), self.axis.x(0) - 4.0, y);
+                let label = text(&number.to_string(), self.axis.left() - 4.0, y);
                 group = group.add(label.set("class", "small").set("text-anchor", "end"));
             }
         }
