@@ -47,8 +47,7 @@ use usage::Usage;
 /// Checks a program: the checked program exactly where there is no error, and everything there is to say about it, in
 /// order of place. It takes time in proportion to the program.
 pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
-    let mut checker =
-        Checker { program, report: Report::default(), scope: Scope::default(), usage: Usage::default() };
+    let mut checker = Checker { program, report: Report::default(), scope: Scope::default(), usage: Usage::default() };
     checker.declare_variables();
     let too_deep = checker.collect_uses();
     checker.check_overlaps();
@@ -56,8 +55,7 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     checker.check_usage(too_deep.is_empty());
     let Checker { report, scope, .. } = checker;
     let (runs, diagnostics) = report.finish();
-    let checked =
-        runs.then(|| Checked { name: program.name.text.clone(), variables: scope.into_variables(), rungs });
+    let checked = runs.then(|| Checked { name: program.name.text.clone(), variables: scope.into_variables(), rungs });
     (checked, diagnostics)
 }
 

@@ -121,7 +121,11 @@ impl Checker<'_> {
         let message = format!("`{}` overlaps `{}`", spell(second), spell(first));
         let problem = Diagnostic::new(Code::AddressConflict, second.span, message)
             .related(first.span, "the other address")
-            .hint(format!("two addresses may share storage only when their widths are equal; `{}` holds `{}`", spell(a), spell(b)));
+            .hint(format!(
+                "two addresses may share storage only when their widths are equal; `{}` holds `{}`",
+                spell(a),
+                spell(b)
+            ));
         self.report.push(problem);
     }
 }

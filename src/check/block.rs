@@ -41,7 +41,14 @@ impl Checker<'_> {
             None => block.outputs().iter().position(|pin| pin.ty == Elementary::Bool),
         };
         // Without a declaration, or with another one, the call was reported.
-        Some(Call { instance: instance.filter(|_| declared == Some(block))?, block, power_input, inputs, outputs, power_output })
+        Some(Call {
+            instance: instance.filter(|_| declared == Some(block))?,
+            block,
+            power_input,
+            inputs,
+            outputs,
+            power_output,
+        })
     }
 
     /// The block type of that name.
@@ -57,7 +64,12 @@ impl Checker<'_> {
     }
 
     /// The block that an instance is of, which must be the one that the call names.
-    fn instance_type(&mut self, id: VariableId, call: &BlockCall, named: Option<StandardBlock>) -> Option<StandardBlock> {
+    fn instance_type(
+        &mut self,
+        id: VariableId,
+        call: &BlockCall,
+        named: Option<StandardBlock>,
+    ) -> Option<StandardBlock> {
         let variable = &self.scope.entry(id).variable;
         let (message, span) = match (variable.ty, named) {
             (Type::Block(block), named) if named.is_none_or(|named| named == block) => return Some(block),
@@ -99,8 +111,7 @@ impl Checker<'_> {
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
         let (pin, other) = if is_output { (output, input) } else { (input, output) };
         let Some(pin) = pin else {
-            let (what, pins) =
-                if is_output { ("output", block.outputs()) } else { ("input", block.inputs()) };
+            let (what, pins) = if is_output { ("output", block.outputs()) } else { ("input", block.inputs()) };
             let message = format!("{} has no {what} `{name}`", block.name());
             let hint = match other {
                 Some(_) if is_output => format!("`{name}` is an input: write `{name} := value`"),
@@ -119,7 +130,13 @@ impl Checker<'_> {
         Some(pin)
     }
 
-    fn input(&mut self, block: StandardBlock, pin: Option<PinId>, wire: &ladder::Wire, walk: &mut Walk) -> Option<Input> {
+    fn input(
+        &mut self,
+        block: StandardBlock,
+        pin: Option<PinId>,
+        wire: &ladder::Wire,
+        walk: &mut Walk,
+    ) -> Option<Input> {
         let pin = match pin {
             Some(PinId::Input(pin)) => Some((pin, block.inputs()[pin].ty)),
             _ => None,
@@ -131,7 +148,8 @@ impl Checker<'_> {
                 let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
                 let (_, ty) = pin?;
                 if ty != Elementary::Bool {
-                    let message = format!("a circuit gives a BOOL, and the pin takes {}", types::with_article(ty.name()));
+                    let message =
+                        format!("a circuit gives a BOOL, and the pin takes {}", types::with_article(ty.name()));
                     let problem = Diagnostic::new(Code::TypeMismatch, circuit.span, message);
                     self.report.push(problem.hint("wire an expression, without brackets"));
                     return None;
@@ -156,7 +174,9 @@ impl Checker<'_> {
             let [gives, takes] = [output.ty, ty].map(|ty| types::with_article(ty.name()));
             let message = format!("`{}` gives {gives}, and this is {takes}", output.name);
             let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
-            self.report.push(problem.hint(format!("an output goes to a variable of its own type; declare one of {}", output.ty)));
+            self.report.push(
+                problem.hint(format!("an output goes to a variable of its own type; declare one of {}", output.ty)),
+            );
             return None;
         }
         Some((pin, place))

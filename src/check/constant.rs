@@ -57,9 +57,7 @@ impl Untyped {
     pub(super) fn unary(self, op: UnaryOperator) -> Folded<Self> {
         match (op, self) {
             (UnaryOperator::Not, Self::Integer(value) | Self::Bits(value)) => Folded::Value(Self::Bits(!value)),
-            (UnaryOperator::Negate, Self::Integer(value)) => {
-                Folded::checked(value.checked_neg().map(Self::Integer))
-            }
+            (UnaryOperator::Negate, Self::Integer(value)) => Folded::checked(value.checked_neg().map(Self::Integer)),
             (UnaryOperator::Negate, Self::Real(value)) => Folded::Value(Self::Real(-value)),
             _ => Folded::Mismatch,
         }

@@ -133,7 +133,8 @@ impl Checker<'_> {
 
     fn place_at(&mut self, id: VariableId, address: &Address, ty: Elementary) {
         if address.width.bits() != ty.bits() {
-            let message = format!("`{}` is {} wide, and {ty} {}", spell(address), bits(address.width.bits()), bits(ty.bits()));
+            let message =
+                format!("`{}` is {} wide, and {ty} {}", spell(address), bits(address.width.bits()), bits(ty.bits()));
             self.report.push(Diagnostic::new(Code::TypeMismatch, address.span, message));
         }
         let Some(extent) = self.extent(address) else { return };

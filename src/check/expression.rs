@@ -176,7 +176,8 @@ impl Checker<'_> {
             }
             (Operand::Typed(a), Operand::Typed(b)) => {
                 let Some(ty) = types::common(a.ty, b.ty) else {
-                    let message = format!("{} takes operands of one type, and these are {} and {}", op.symbol(), a.ty, b.ty);
+                    let message =
+                        format!("{} takes operands of one type, and these are {} and {}", op.symbol(), a.ty, b.ty);
                     let hint = "only widening without loss is implied, and neither holds every value of the other";
                     self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).hint(hint));
                     return None;

@@ -132,7 +132,12 @@ impl Checker<'_> {
     }
 
     /// A circuit and the power on its right. What is faulty in it was reported and is left out.
-    pub(super) fn circuit(&mut self, circuit: &ladder::Circuit, left: Power, walk: &mut Walk) -> (model::Circuit, Power) {
+    pub(super) fn circuit(
+        &mut self,
+        circuit: &ladder::Circuit,
+        left: Power,
+        walk: &mut Walk,
+    ) -> (model::Circuit, Power) {
         let mut right = Power::Never(circuit.span);
         let mut met_right = false;
         let mut branches = Vec::with_capacity(circuit.branches.len());
@@ -184,7 +189,8 @@ impl Checker<'_> {
         if let (Some(used), false) = (node.used, node.faulty) {
             node.faulty = true;
             let message = format!("node `{}` is fed after a branch started from it", name.text);
-            let problem = Diagnostic::new(Code::NodeMisuse, name.span, message).related(used, "that branch starts here");
+            let problem =
+                Diagnostic::new(Code::NodeMisuse, name.span, message).related(used, "that branch starts here");
             self.report.push(problem.hint("let this branch stand before that one"));
         }
         node.id
@@ -214,9 +220,8 @@ impl Checker<'_> {
             ElementKind::Coil { kind, target } => {
                 walk.effect(left);
                 let written = self.write(target);
-                let target = written.and_then(|(place, ty)| {
-                    self.is_bool(ty, "a coil writes", target.span).then_some(place)
-                });
+                let target =
+                    written.and_then(|(place, ty)| self.is_bool(ty, "a coil writes", target.span).then_some(place));
                 if let Some(target) = target {
                     self.note_coil(*kind, target, element.span, walk);
                 }

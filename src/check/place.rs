@@ -23,7 +23,8 @@ impl Checker<'_> {
     pub(super) fn lookup(&mut self, name: &Name, otherwise: impl FnOnce() -> Option<String>) -> Option<VariableId> {
         let Some(id) = self.scope.find(name) else {
             if self.scope.first_unknown(name) {
-                let problem = Diagnostic::new(Code::UndeclaredName, name.span, format!("`{}` is not declared", name.text));
+                let problem =
+                    Diagnostic::new(Code::UndeclaredName, name.span, format!("`{}` is not declared", name.text));
                 let suggestion = self.scope.suggest(&name.text).map(|near| format!("did you mean `{near}`?"));
                 let hint = match (suggestion, otherwise()) {
                     (Some(suggestion), Some(otherwise)) => Some(format!("{suggestion} Otherwise {otherwise}")),
@@ -66,9 +67,8 @@ impl Checker<'_> {
         let variable = &self.scope.entry(place.variable).variable;
         let (name, declared, span) = (&variable.name, variable.span, reference.span);
         let problem = match (variable.class, place.pin) {
-            (VariableClass::Constant, _) => {
-                Diagnostic::new(Code::NotWritable, span, format!("`{name}` is a constant")).related(declared, "declared here")
-            }
+            (VariableClass::Constant, _) => Diagnostic::new(Code::NotWritable, span, format!("`{name}` is a constant"))
+                .related(declared, "declared here"),
             (VariableClass::Input, _) => {
                 let problem = match self.program.origin {
                     Origin::Native => Diagnostic::new(Code::CoilOnInput, span, format!("`{name}` is an input"))
@@ -119,7 +119,8 @@ impl Checker<'_> {
                     (place.bit, ty) = (Some(*bit), Elementary::Bool);
                 }
                 Step::Member(name) => {
-                    let message = format!("{} has no members, and so no `{}`", types::with_article(ty.name()), name.text);
+                    let message =
+                        format!("{} has no members, and so no `{}`", types::with_article(ty.name()), name.text);
                     self.report.push(Diagnostic::new(Code::UnknownMember, name.span, message));
                     return None;
                 }
@@ -146,8 +147,11 @@ impl Checker<'_> {
                     return Some((PinId::Input(pin), inputs[pin].ty));
                 }
                 let message = format!("`{name}` is {} and has no `{}`", types::with_article(block.name()), member.text);
-                Diagnostic::new(Code::UnknownMember, member.span, message)
-                    .hint(format!("its outputs are {}, its inputs {}", list(outputs), list(inputs)))
+                Diagnostic::new(Code::UnknownMember, member.span, message).hint(format!(
+                    "its outputs are {}, its inputs {}",
+                    list(outputs),
+                    list(inputs)
+                ))
             }
             Some(Step::Bit(_, span)) => {
                 Diagnostic::new(Code::UnknownMember, *span, format!("`{name}` is a block instance and has no bits"))
@@ -155,7 +159,8 @@ impl Checker<'_> {
             None => {
                 let message = format!("`{name}` is a block instance, not a value");
                 let first = outputs.first().map_or("", |pin| pin.name);
-                Diagnostic::new(Code::TypeMismatch, span, message).hint(format!("name one of its pins, as `{name}.{first}`"))
+                Diagnostic::new(Code::TypeMismatch, span, message)
+                    .hint(format!("name one of its pins, as `{name}.{first}`"))
             }
         };
         self.report.push(problem);
@@ -164,7 +169,8 @@ impl Checker<'_> {
 
     fn check_bit(&mut self, ty: Elementary, bit: u8, span: Span) -> Option<()> {
         let problem = if ty == Elementary::Bool || !ty.is_bit_string() {
-            let message = format!("only BYTE, WORD, DWORD and LWORD have bits, and this is {}", types::with_article(ty.name()));
+            let message =
+                format!("only BYTE, WORD, DWORD and LWORD have bits, and this is {}", types::with_article(ty.name()));
             Diagnostic::new(Code::TypeMismatch, span, message)
         } else if u32::from(bit) >= ty.bits() {
             Diagnostic::new(Code::OutOfRange, span, format!("{} has no bit {bit}", types::with_article(ty.name())))

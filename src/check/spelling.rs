@@ -77,7 +77,7 @@ mod tests {
     fn the_nearest_name_is_suggested_and_none_that_is_far() {
         let names = ["start", "stop", "pump", "pumps"];
         let nearest = |name| nearest(name, names.into_iter(), &mut Budget::default());
-        assert_eq!(nearest("PUMSP"), Some("pumps"));
+        assert_eq!(nearest("PUPMS"), Some("pumps"));
         assert_eq!(nearest("strat"), Some("start"));
         assert_eq!(nearest("valve"), None);
         assert_eq!(nearest("x"), None);

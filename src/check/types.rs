@@ -34,11 +34,7 @@ pub(super) fn widens(from: Elementary, to: Elementary) -> bool {
 
 /// The one of two types that both widen to, if there is one.
 pub(super) fn common(a: Elementary, b: Elementary) -> Option<Elementary> {
-    if a == b || widens(b, a) {
-        Some(a)
-    } else {
-        widens(a, b).then_some(b)
-    }
+    if a == b || widens(b, a) { Some(a) } else { widens(a, b).then_some(b) }
 }
 
 /// The real type that an unadorned real literal takes beside an operand of a type, if any.

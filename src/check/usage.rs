@@ -65,7 +65,8 @@ impl Checker<'_> {
             Diagnostic::new(Code::DoubleCoil, last.span, format!("`{}` is written by coils in {rungs}", name(last)))
                 .hint("the last one decides; join the circuits in one rung, or use only set and reset coils");
         for coil in coils[..coils.len() - 1].iter().take(MOST_RELATED) {
-            problem = problem.related(coil.span, format!("`{}` is written here, in {}", name(coil), self.rung_name(coil.rung)));
+            problem = problem
+                .related(coil.span, format!("`{}` is written here, in {}", name(coil), self.rung_name(coil.rung)));
         }
         self.report.push(problem);
     }
@@ -101,7 +102,8 @@ impl Checker<'_> {
                 VariableClass::Memory => "uses",
                 VariableClass::Constant => "uses the constant",
             };
-            let problem = Diagnostic::new(Code::UnusedName, variable.span, format!("no rung {what} `{}`", variable.name));
+            let problem =
+                Diagnostic::new(Code::UnusedName, variable.span, format!("no rung {what} `{}`", variable.name));
             self.report.push(problem.hint("a name that starts with `_` may stay unused"));
         }
     }

@@ -65,7 +65,15 @@ pub(super) fn reference(text: &str) -> Reference {
 fn declared(class: VariableClass, text: &str, ty: Option<&str>) -> Variable {
     let name = name(text);
     let type_name = ty.map(self::name);
-    Variable { class, name, type_name, address: None, initial: None, retain: false, span: span(format!("declaration of {text}")) }
+    Variable {
+        class,
+        name,
+        type_name,
+        address: None,
+        initial: None,
+        retain: false,
+        span: span(format!("declaration of {text}")),
+    }
 }
 
 pub(super) fn input(text: &str) -> Variable {
