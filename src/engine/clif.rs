@@ -101,8 +101,10 @@ pub const BRANCHING: &[Branching] = &[
 pub struct Chunk {
     /// The sections that it was made from.
     pub sections: Range<usize>,
-    /// The code, without relocations.
+    /// The code, without relocations: instructions, then the constants that they read.
     pub code: Vec<u8>,
+    /// Bytes of `code` that are instructions.
+    pub instruction_bytes: usize,
     /// What its first byte must be aligned to, a power of two.
     pub alignment: u32,
     /// Offsets into the image, in bytes, of the pointers that it takes.
@@ -164,14 +166,16 @@ impl<'a> Compiler<'a> {
             return Err(refused("the code refers to something outside of itself".to_owned()));
         }
         let mut marks: Vec<(u32, usize)> = Vec::new();
+        let mut instruction_bytes = 0;
         for location in compiled.buffer.get_srclocs_sorted() {
+            instruction_bytes = location.end as usize;
             let Some(section) = section_at(location.loc) else { continue };
             if marks.last().is_none_or(|(_, last)| *last != section) {
                 marks.push((location.start, section));
             }
         }
         let alignment = self.isa.function_alignment().minimum.max(compiled.buffer.alignment);
-        Ok(Chunk { sections, code: compiled.code_buffer().to_vec(), alignment, bases, marks })
+        Ok(Chunk { sections, code: compiled.code_buffer().to_vec(), instruction_bytes, alignment, bases, marks })
     }
 
     /// Makes the function of a chunk in `self.context`.

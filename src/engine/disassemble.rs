@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use capstone::InsnGroupType::{CS_GRP_CALL, CS_GRP_JUMP};
-use capstone::arch::{self, BuildsCapstone};
+use capstone::arch::{self, BuildsCapstone, BuildsCapstoneExtraMode};
 use capstone::{Capstone, InsnGroupId};
 use target_lexicon::{Architecture, Triple};
 
@@ -49,9 +49,7 @@ pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
 
 fn decoder(target: &Triple) -> Result<Capstone, String> {
     let built = match target.architecture {
-        Architecture::X86_64 => {
-            Capstone::new().x86().mode(arch::x86::ArchMode::Mode64).detail(true).build()
-        }
+        Architecture::X86_64 => Capstone::new().x86().mode(arch::x86::ArchMode::Mode64).detail(true).build(),
         Architecture::Aarch64(_) => Capstone::new().arm64().mode(arch::arm64::ArchMode::Arm).detail(true).build(),
         Architecture::Riscv64(_) => Capstone::new()
             .riscv()
@@ -74,7 +72,7 @@ pub fn listing(program: &Program, chunks: &[Chunk], target: &Triple) -> Result<S
         let (first, last) = (chunk.sections.start, chunk.sections.end.saturating_sub(1));
         let _ = writeln!(out, "; sections {first} to {last}, bases at image + {:?}", chunk.bases);
         let mut marks = chunk.marks.iter().peekable();
-        let lines = lines(&chunk.code, target)?;
+        let lines = lines(&chunk.code[..chunk.instruction_bytes], target)?;
         for line in &lines {
             while let Some((_, section)) = marks.next_if(|(offset, _)| u64::from(*offset) <= line.offset) {
                 out.push_str(&heading(program, *section, ";"));
@@ -85,9 +83,12 @@ pub fn listing(program: &Program, chunks: &[Chunk], target: &Triple) -> Result<S
             }
             let _ = writeln!(out, "{:width$} {}", "", line.text, width = 30usize.saturating_sub(3 * line.bytes.len()));
         }
-        let decoded = lines.last().map_or(0, |line| line.offset as usize + line.bytes.len());
-        if decoded < chunk.code.len() {
-            let _ = writeln!(out, "{decoded:6x}:  {} bytes that are no instruction", chunk.code.len() - decoded);
+        for (index, constant) in chunk.code[chunk.instruction_bytes..].chunks(8).enumerate() {
+            let _ = write!(out, "{:6x}:  .byte", chunk.instruction_bytes + 8 * index);
+            for byte in constant {
+                let _ = write!(out, " {byte:02x}");
+            }
+            out.push('\n');
         }
         out.push('\n');
     }

@@ -68,9 +68,8 @@ impl Lowering<'_, '_> {
             }
             Binary::Minimum | Binary::Maximum => {
                 let less = if ty.is_signed() { IntCC::SignedLessThan } else { IntCC::UnsignedLessThan };
-                let (a, b) = if op == Binary::Minimum { (a, b) } else { (b, a) };
                 let a_is_less = self.builder.ins().icmp(less, a, b);
-                self.choose(a_is_less, a, b)
+                if op == Binary::Minimum { self.choose(a_is_less, a, b) } else { self.choose(a_is_less, b, a) }
             }
             Binary::ShiftLeft => {
                 let value = self.builder.ins().ishl(a, b);
@@ -103,7 +102,7 @@ impl Lowering<'_, '_> {
 
     /// All ones where a signed value is negative, else zero.
     fn sign_mask(&mut self, ty: Elementary, value: Value) -> Value {
-        self.builder.ins().sshr_imm(value, i64::from(holder(ty).bits()) - 1)
+        self.builder.ins().sshr_imm_u(value, i64::from(holder(ty).bits()) - 1)
     }
 
     /// `value` with its sign turned where `mask` is all ones.

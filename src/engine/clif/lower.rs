@@ -203,9 +203,8 @@ impl Lowering<'_, '_> {
         let (pointer, way) = self.address(slot.offset);
         let exact = MemFlagsData::trusted();
         let signed = slot.ty.is_signed();
-        let wide = slot.ty == Elementary::Bool
-            && self.target.wide_loads
-            && !self.stored.lately(slot.offset, self.section);
+        let wide =
+            slot.ty == Elementary::Bool && self.target.wide_loads && !self.stored.lately(slot.offset, self.section);
         let ins = self.builder.ins();
         let value = match slot.ty.size() {
             1 if wide => ins.load(types::I32, MemFlagsData::new().with_notrap(), pointer, way),
@@ -344,8 +343,7 @@ impl Lowering<'_, '_> {
             Compare::GreaterOrEqual if signed => IntCC::SignedGreaterThanOrEqual,
             Compare::GreaterOrEqual => IntCC::UnsignedGreaterThanOrEqual,
         };
-        let (a, b) =
-            if ty == Elementary::Bool { (self.flag(a), self.flag(b)) } else { (self.value(a), self.value(b)) };
+        let (a, b) = if ty == Elementary::Bool { (self.flag(a), self.flag(b)) } else { (self.value(a), self.value(b)) };
         self.builder.ins().icmp(condition, a, b)
     }
 

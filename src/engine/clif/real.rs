@@ -153,13 +153,13 @@ impl Lowering<'_, '_> {
             self.builder.ins().fcvt_from_sint(float(to), wide)
         } else {
             // With its top bit set: half of it, the lost bit kept so that rounding sees it, and the result doubled.
-            let top = self.builder.ins().ushr_imm(wide, 63);
+            let top = self.builder.ins().ushr_imm_u(wide, 63);
             let lost = self.builder.ins().band(wide, top);
             let half = self.builder.ins().ushr(wide, top);
             let half = self.builder.ins().bor(half, lost);
             let real = self.builder.ins().fcvt_from_sint(float(to), half);
             // 1.0 or 2.0.
-            let factor = self.builder.ins().iadd_imm(top, 1);
+            let factor = self.builder.ins().iadd_imm_u(top, 1);
             let factor = self.builder.ins().fcvt_from_sint(float(to), factor);
             self.builder.ins().fmul(real, factor)
         };
@@ -174,13 +174,13 @@ impl Lowering<'_, '_> {
         } else {
             bits
         };
-        let negative = self.builder.ins().sshr_imm(bits, 63);
+        let negative = self.builder.ins().sshr_imm_u(bits, 63);
         let size = self.without_sign(Elementary::Lreal, bits);
         let size = self.whole(size);
 
         // The magnitude: the fraction with its leading one, moved down from the top of 64 bits.
-        let exponent = self.builder.ins().ushr_imm(size, i64::from(FRACTION_BITS));
-        let fraction = self.builder.ins().ishl_imm(size, 63 - i64::from(FRACTION_BITS));
+        let exponent = self.builder.ins().ushr_imm_u(size, i64::from(FRACTION_BITS));
+        let fraction = self.builder.ins().ishl_imm_u(size, 63 - i64::from(FRACTION_BITS));
         let leading = self.integer_constant(types::I64, 1 << 63);
         let fraction = self.builder.ins().bor(fraction, leading);
         let top = self.integer_constant(types::I64, EXPONENT_OF_ONE + 63);
