@@ -10,6 +10,7 @@
 mod build;
 pub mod evaluate;
 pub mod image;
+pub mod map;
 mod op;
 mod parse;
 mod print;
