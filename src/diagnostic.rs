@@ -104,6 +104,7 @@ codes! {
     BadLogic = 801 Error "logic that cannot be used",
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
+    EnginesDiffer = 902 Error "two engines compute different values",
 }
 
 impl fmt::Display for Code {

@@ -18,4 +18,6 @@ pub mod logic;
 pub mod lower;
 pub mod opt;
 pub mod replay;
+pub mod simulate;
 pub mod source;
+pub mod trace;
