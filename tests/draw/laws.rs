@@ -295,6 +295,14 @@ fn a_rung_whose_wires_would_fill_pages_says_so() {
 }
 
 #[test]
+fn no_width_is_too_small_or_too_large() {
+    let program = program("p", vec![], vec![rung("r", "", vec![open("a"), out("b")])]);
+    let at = |width| text(&program, &TextOptions { width });
+    assert_eq!(at(0), at(rung::draw::MINIMUM_WIDTH));
+    assert_eq!(at(usize::MAX), at(rung::draw::MAXIMUM_WIDTH));
+}
+
+#[test]
 fn long_rungs_and_many_branches_are_drawn_whole() {
     let many = || (0..20_000).map(|index| open(&format!("a{index}")));
     let in_series = rung("series", "", many().collect());
