@@ -5,6 +5,7 @@
 use super::Checker;
 use super::model::{Place, VariableId};
 use super::network::Walk;
+use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{CoilKind, VariableClass};
 use crate::source::Span;
@@ -74,7 +75,7 @@ impl Checker<'_> {
         if coils.iter().all(|(_, coil)| coil.latches) {
             return;
         }
-        let name = |coil: &Coil| &self.scope.entry(coil.variable).variable.name;
+        let name = |coil: &Coil| clipped(&self.scope.entry(coil.variable).variable.name);
         let message = format!("`{}` is written by coils in {}", name(last), self.both(first.rung, last.rung));
         let mut problem = Diagnostic::new(Code::DoubleCoil, last.span, message)
             .hint("the last one decides; join the circuits in one rung, or use only set and reset coils");

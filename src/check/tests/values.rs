@@ -174,6 +174,16 @@ fn initial_values_are_constants_of_constants_before_them() {
 }
 
 #[test]
+fn a_value_that_tells_a_missing_type_says_so() {
+    for (value, ty) in [(seconds(5), "TIME"), (int(5), "INT"), (real(0.5), "REAL")] {
+        let untyped = Variable { type_name: None, ..constant("_c", "BOOL", value) };
+        let found = only(&program(vec![untyped], vec![]));
+        assert_eq!((found.code, found.hint), (Code::TypeMismatch, Some(format!("write its type, as in `_c : {ty}`"))));
+    }
+    clean(&program(vec![input("_i"), output("_q").starting(int(1)), output("_r").starting(truth(true))], vec![]));
+}
+
+#[test]
 fn initial_values_that_are_not_known_at_the_start_are_refused() {
     let assign_x = || vec![rung(vec![assign("x", int(0)), assign("y", int(0))])];
     let refused = |x: Variable, y: Variable| program(vec![x, y], assign_x());
