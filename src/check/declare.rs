@@ -43,7 +43,7 @@ impl Checker<'_> {
             self.check_instance(declared, block);
         } else if declared.retain && matches!(class, VariableClass::Input | VariableClass::Constant) {
             let message = format!("the {} `{}` cannot be retained", class_name(class), declared.name.text);
-            let problem = Diagnostic::new(Code::RetainedInput, declared.span, message);
+            let problem = Diagnostic::new(Code::RetainedInput, declared.name.span, message);
             self.report.push(problem.hint("only what the program writes is worth keeping; leave `retain` out"));
         }
         let elementary = match ty {
@@ -58,7 +58,7 @@ impl Checker<'_> {
             retain: declared.retain,
             address: declared.address.clone(),
             shares: None,
-            span: declared.span,
+            span: declared.name.span,
         };
         let state = match (ty, class) {
             (None, _) => State::Broken,
@@ -119,7 +119,7 @@ impl Checker<'_> {
         let instance = format!("an instance of {}", block.name());
         if declared.class != VariableClass::Memory {
             let message = format!("{} cannot be {instance}", types::with_article(class_name(declared.class)));
-            let problem = Diagnostic::new(Code::TypeMismatch, declared.span, message);
+            let problem = Diagnostic::new(Code::TypeMismatch, declared.name.span, message);
             self.report.push(problem.hint("declare it with `var`"));
         }
         if let Some(address) = &declared.address {
@@ -179,7 +179,7 @@ impl Checker<'_> {
             }
             (None, Some(_)) if declared.class == VariableClass::Constant => {
                 let message = format!("the constant `{}` has no value", declared.name.text);
-                let problem = Diagnostic::new(Code::NotConstant, declared.span, message);
+                let problem = Diagnostic::new(Code::NotConstant, declared.name.span, message);
                 self.report.push(problem.hint("write one behind `:=`"));
                 self.settle(id, None);
             }

@@ -151,7 +151,7 @@ fn what_has_another_type_is_a_mismatch() {
         (
             program(vec![input("t").typed("TON"), output("q")], vec![rung(vec![open("t.Q"), coil("q")])]),
             Code::TypeMismatch,
-            "declaration of t",
+            "t",
         ),
         (
             program(vec![memory("t", "TON").starting(int(1)), output("q")], vec![rung(vec![open("t.Q"), coil("q")])]),
@@ -198,7 +198,7 @@ fn initial_values_that_are_not_known_at_the_start_are_refused() {
     table(vec![
         (program(later, uses("a")), Code::NotConstant, "b"),
         (program(itself, uses("a")), Code::NotConstant, "a"),
-        (program(vec![none, memory("x", "INT")], uses("a")), Code::NotConstant, "declaration of a"),
+        (program(vec![none, memory("x", "INT")], uses("a")), Code::NotConstant, "a"),
     ]);
 }
 
