@@ -7,6 +7,7 @@ mod check;
 mod fmt;
 mod load;
 mod output;
+mod run;
 mod show;
 
 use std::process::ExitCode;
@@ -29,6 +30,7 @@ enum Command {
     Check(check::Arguments),
     Fmt(fmt::Arguments),
     Show(show::Arguments),
+    Run(run::Arguments),
 }
 
 /// Runs the command that the process was started with, and gives its exit code: 0, or 1 when there was an error
@@ -39,6 +41,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Fmt(arguments) => fmt::run(arguments),
         Command::Show(arguments) => show::run(arguments),
+        Command::Run(arguments) => run::run(arguments),
     };
     output::exit(result)
 }

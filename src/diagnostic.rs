@@ -102,6 +102,11 @@ codes! {
     BadLogic = 801 Error "logic that cannot be used",
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
+    EnginesDiffer = 902 Error "two engines computed different things",
+    // Running.
+    BadTiming = 1001 Error "times that do not go together",
+    CannotStart = 1002 Error "the program cannot be started",
+    Stopped = 1003 Error "the program was stopped",
 }
 
 impl fmt::Display for Code {
