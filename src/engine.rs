@@ -5,5 +5,6 @@
 
 pub mod both;
 pub mod clif;
+pub mod disassemble;
 pub mod interp;
 pub mod jit;

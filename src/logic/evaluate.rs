@@ -5,6 +5,9 @@
 //! the implementer is fixed here: integers wrap around, a quotient by zero is 0, a NaN that an operation makes is
 //! the canonical quiet one.
 
+#[cfg(test)]
+mod tests;
+
 use super::{Binary, Compare, Unary};
 use crate::elementary::{Elementary, canonical, f32_of};
 

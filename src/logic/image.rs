@@ -8,11 +8,16 @@
 //! With an earlier layout given, every slot of it keeps its offset, new ones are appended as a second group of
 //! the same order, and each run gets one more [`Extent`].
 
-use std::collections::HashMap;
+mod check;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
-use crate::elementary::{Elementary, Value, canonical};
+use crate::elementary::{Elementary, Value};
 
 /// Bytes behind the last slot: an engine may read a BOOL as the low byte of 4.
 pub const TAIL_PADDING: u32 = 3;
@@ -106,6 +111,42 @@ pub struct Layout {
 pub struct ImageTooLarge;
 
 impl Layout {
+    /// A layout of given parts, as a text tells them.
+    ///
+    /// # Errors
+    /// What is wrong with them: see [`EarlierLayout::problems`].
+    pub fn from_parts(
+        slots: Vec<Slot>,
+        observed: Vec<Observed>,
+        inputs: Vec<Extent>,
+        outputs: Vec<Range<u32>>,
+        retained: Vec<Range<u32>>,
+        size: u32,
+    ) -> Result<Self, Vec<String>> {
+        let layout = Self { slots, observed, inputs, outputs, retained, size };
+        let problems = layout.problems();
+        if problems.is_empty() { Ok(layout) } else { Err(problems) }
+    }
+
+    /// What is wrong with it, which of one that a [`LayoutBuilder`] made is nothing: all that
+    /// [`EarlierLayout::problems`] names; an initial value of another type; what is observed twice or is no slot.
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = EarlierLayout::from(self).problems();
+        for slot in self.slots.iter().filter(|slot| slot.initial.ty() != slot.ty) {
+            problems.push(format!("`{}` starts with {:?}, which is no {}", slot.name, slot.initial, slot.ty));
+        }
+        let mut names = HashSet::new();
+        for Observed { name, slot } in &self.observed {
+            if slot.index() >= self.slots.len() {
+                problems.push(format!("`{name}` shows {slot}, which is no slot"));
+            }
+            if !names.insert(name) {
+                problems.push(format!("`{name}` is observed twice"));
+            }
+        }
+        problems
+    }
+
     /// The slots, in the order in which they were asked for.
     pub fn slots(&self) -> &[Slot] {
         &self.slots
@@ -170,17 +211,7 @@ impl Slot {
     /// # Panics
     /// When the image is shorter than the layout.
     pub fn read(&self, image: &[u8]) -> Value {
-        let at = self.offset as usize;
-        let bytes = &image[at..at + self.ty.size() as usize];
-        let mut wide = [0; 8];
-        let bits = if cfg!(target_endian = "little") {
-            wide[..bytes.len()].copy_from_slice(bytes);
-            u64::from_le_bytes(wide)
-        } else {
-            wide[8 - bytes.len()..].copy_from_slice(bytes);
-            u64::from_be_bytes(wide)
-        };
-        if self.ty == Elementary::Bool { Value::bool(bits != 0) } else { Value::from_bits(self.ty, bits) }
+        read(image, self.offset, self.ty)
     }
 
     /// Puts a value into an image of this slot's layout; bits outside this slot's type are dropped.
@@ -188,14 +219,38 @@ impl Slot {
     /// # Panics
     /// When the image is shorter than the layout.
     pub fn write(&self, image: &mut [u8], value: Value) {
-        let (at, size) = (self.offset as usize, self.ty.size() as usize);
-        let bits = canonical(self.ty, value.bits());
-        let bytes = &mut image[at..at + size];
-        if cfg!(target_endian = "little") {
-            bytes.copy_from_slice(&bits.to_le_bytes()[..size]);
-        } else {
-            bytes.copy_from_slice(&bits.to_be_bytes()[8 - size..]);
-        }
+        write(image, self.offset, Value::from_bits(self.ty, value.bits()));
+    }
+}
+
+/// The value of type `ty` that lies at `offset`. A BOOL is whether its byte is other than 0.
+///
+/// # Panics
+/// When it lies outside the image.
+pub fn read(image: &[u8], offset: u32, ty: Elementary) -> Value {
+    let bytes = &image[offset as usize..][..ty.size() as usize];
+    let mut wide = [0; 8];
+    let bits = if cfg!(target_endian = "little") {
+        wide[..bytes.len()].copy_from_slice(bytes);
+        u64::from_le_bytes(wide)
+    } else {
+        wide[8 - bytes.len()..].copy_from_slice(bytes);
+        u64::from_be_bytes(wide)
+    };
+    if ty == Elementary::Bool { Value::bool(bits != 0) } else { Value::from_bits(ty, bits) }
+}
+
+/// Puts a value at `offset`, as [`read`] reads it.
+///
+/// # Panics
+/// When it does not fit into the image.
+pub fn write(image: &mut [u8], offset: u32, value: Value) {
+    let size = value.ty().size() as usize;
+    let bytes = &mut image[offset as usize..][..size];
+    if cfg!(target_endian = "little") {
+        bytes.copy_from_slice(&value.bits().to_le_bytes()[..size]);
+    } else {
+        bytes.copy_from_slice(&value.bits().to_be_bytes()[8 - size..]);
     }
 }
 

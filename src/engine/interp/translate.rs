@@ -1,0 +1,296 @@
+//! From a program to gates and steps.
+//!
+//! A BOOL stays a [`Function`] of cells for as long as it can: it gets a gate of its own when it is stored, when a step
+//! needs it, when several others share it, or when a cell that it reads is about to change. A value that a later store
+//! puts into a slot goes there at once if nothing touches the slot before that store.
+
+use std::collections::HashMap;
+
+use super::Interpreter;
+use super::gate::{Function, Gate, compare};
+use super::step::{Kind, Step};
+use crate::elementary::{Elementary, Value};
+use crate::logic::image::write;
+use crate::logic::{Binary, Instruction, Op, Program, SlotId, Unary, ValueId};
+
+/// Constants and the time take eight bytes each, whatever their type.
+const CONSTANT_BYTES: u32 = 8;
+
+pub(super) fn translate(program: &Program) -> Interpreter {
+    let mut translator = Translator::new(program);
+    for chunk in program.chunks() {
+        let instructions = program.section_range(chunk.start).start..program.section_range(chunk.end - 1).end;
+        // No value lives beyond its chunk, so every chunk uses the same cells.
+        translator.scratch_end = translator.scratch_start;
+        for index in instructions {
+            translator.instruction(index);
+        }
+    }
+    translator.finish()
+}
+
+struct Translator<'a> {
+    program: &'a Program,
+    /// The instruction being translated.
+    at: usize,
+    /// What each value is made of now; of one that is not BOOL, always a single cell.
+    values: Vec<Function>,
+    /// How often each value is still used, from the present instruction on.
+    uses: Vec<u32>,
+    /// The first store of each value, and of each store the access to its slot before, as places of instructions.
+    first_store: Vec<Option<usize>>,
+    access_before: HashMap<usize, usize>,
+    /// Which values may be made of the cell of a slot.
+    watchers: HashMap<u32, Vec<ValueId>>,
+    constants: HashMap<(u32, u64), u32>,
+    gates: Vec<Gate>,
+    steps: Vec<Step>,
+    /// The gates before the last step.
+    gates_placed: usize,
+    cells: Vec<u8>,
+    scratch_start: u32,
+    scratch_end: u32,
+    scratch_most: u32,
+}
+
+impl<'a> Translator<'a> {
+    fn new(program: &'a Program) -> Self {
+        let count = program.instructions.len();
+        let mut uses = vec![0; count];
+        let (mut first_store, mut access_before) = (vec![None; count], HashMap::new());
+        let mut last_access = HashMap::new();
+        // The time comes right behind the image.
+        let mut cells = vec![0; (program.layout.size() + CONSTANT_BYTES) as usize];
+        let mut constants = HashMap::new();
+        for (index, instruction) in program.instructions.iter().enumerate() {
+            for operand in instruction.op.operands() {
+                uses[operand.index()] += 1;
+            }
+            match instruction.op {
+                Op::Load(slot) => {
+                    last_access.insert(slot, index);
+                }
+                Op::Store(slot, value) => {
+                    first_store[value.index()].get_or_insert(index);
+                    if let Some(before) = last_access.insert(slot, index) {
+                        access_before.insert(index, before);
+                    }
+                }
+                Op::Constant(bits) if instruction.ty != Elementary::Bool => {
+                    constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {
+                        let cell = offset(cells.len());
+                        cells.resize(cells.len() + CONSTANT_BYTES as usize, 0);
+                        write(&mut cells, cell, Value::from_bits(instruction.ty, bits));
+                        cell
+                    });
+                }
+                _ => {}
+            }
+        }
+        let scratch = offset(cells.len());
+        Self {
+            program,
+            at: 0,
+            values: vec![Function::constant(false); count],
+            uses,
+            first_store,
+            access_before,
+            watchers: HashMap::new(),
+            constants,
+            gates: Vec::new(),
+            steps: Vec::new(),
+            gates_placed: 0,
+            cells,
+            scratch_start: scratch,
+            scratch_end: scratch,
+            scratch_most: scratch,
+        }
+    }
+
+    fn finish(mut self) -> Interpreter {
+        self.cells.resize(self.scratch_most as usize, 0);
+        let image_size = self.program.layout.size() as usize;
+        Interpreter { gates: self.gates, steps: self.steps, cells: self.cells, image_size }
+    }
+
+    fn instruction(&mut self, index: usize) {
+        self.at = index;
+        let instruction = self.program.instructions[index];
+        let value = ValueId(offset(index));
+        match instruction.op {
+            Op::Store(slot, stored) => self.store(slot, stored),
+            // What nothing uses is not computed.
+            _ if self.uses[index] == 0 => {}
+            Op::Constant(bits) if instruction.ty == Elementary::Bool => {
+                self.set(value, Function::constant(bits != 0));
+            }
+            Op::Constant(bits) => self.set(value, Function::cell(self.constants[&(instruction.ty.size(), bits)])),
+            Op::Now => self.set(value, Function::cell(self.program.layout.size())),
+            Op::Load(slot) => self.set(value, Function::cell(self.program.layout.slot(slot).offset)),
+            op => match boolean(self.program, instruction) {
+                Some(of) => {
+                    let function = self.combine(op, of);
+                    self.set(value, function);
+                }
+                None => self.step(value, instruction),
+            },
+        }
+        for operand in instruction.op.operands() {
+            self.uses[operand.index()] -= 1;
+        }
+    }
+
+    fn ty(&self, value: ValueId) -> Elementary {
+        self.program.instructions[value.index()].ty
+    }
+
+    /// Notes what a value is made of now.
+    fn set(&mut self, value: ValueId, function: Function) {
+        self.values[value.index()] = function;
+        let size = self.program.layout.size();
+        for cell in function.inputs().iter().filter(|cell| **cell < size) {
+            self.watchers.entry(*cell).or_default().push(value);
+        }
+    }
+
+    fn store(&mut self, slot: SlotId, value: ValueId) {
+        let cell = self.program.layout.slot(slot).offset;
+        if self.values[value.index()].as_cell() == Some(cell) {
+            return;
+        }
+        self.release(cell, value);
+        self.compute(value, cell);
+    }
+
+    /// A BOOL operation as a function of cells.
+    fn combine(&mut self, op: Op, of: Boolean) -> Function {
+        for operand in op.operands() {
+            // What several use is computed once.
+            if self.uses[operand.index()] > 1 && self.values[operand.index()].inputs().len() > 1 {
+                self.settle(operand);
+            }
+        }
+        loop {
+            // Settling one operand can move another, so each round looks at all of them anew.
+            let none = Function::constant(false);
+            let mut operands = [&none; 3];
+            for (place, operand) in operands.iter_mut().zip(op.operands()) {
+                *place = &self.values[operand.index()];
+            }
+            if let Some(function) = Function::combine(operands, |tables| of.apply(tables)) {
+                return function;
+            }
+            if let Some(largest) = op.operands().max_by_key(|operand| self.values[operand.index()].inputs().len()) {
+                self.settle(largest);
+            }
+        }
+    }
+
+    fn step(&mut self, value: ValueId, instruction: Instruction) {
+        let operands = instruction.op.operands();
+        let Some(first) = operands.map(|operand| self.settle(operand)).reduce(|first, _| first) else { return };
+        let Some((kind, swapped)) = Kind::of(instruction, self.ty(first)) else { return };
+        // An operand for the last time may lie in the very cell that the step sets: it reads before it writes.
+        let last: Vec<ValueId> = instruction.op.operands().collect();
+        last.iter().for_each(|operand| self.uses[operand.index()] -= 1);
+        let target = self.target(value, instruction.ty);
+        last.iter().for_each(|operand| self.uses[operand.index()] += 1);
+        let mut cells = [0; 3];
+        for (cell, operand) in cells.iter_mut().zip(instruction.op.operands()) {
+            *cell = self.values[operand.index()].as_cell().unwrap_or_default();
+        }
+        if swapped {
+            cells.swap(0, 1);
+        }
+        self.push(kind, cells, target);
+        self.set(value, Function::cell(target));
+    }
+
+    fn push(&mut self, kind: Kind, operands: [u32; 3], target: u32) {
+        let gates_before = offset(self.gates.len() - self.gates_placed);
+        self.gates_placed = self.gates.len();
+        self.steps.push(Step { gates_before, target, operands, kind });
+    }
+
+    /// Sees to it that a value has a cell of its own.
+    fn settle(&mut self, value: ValueId) -> ValueId {
+        if self.values[value.index()].as_cell().is_none() {
+            let target = self.target(value, Elementary::Bool);
+            self.compute(value, target);
+        }
+        value
+    }
+
+    /// Computes a BOOL into a cell, or copies a value there; from now on it is that cell.
+    fn compute(&mut self, value: ValueId, target: u32) {
+        let function = self.values[value.index()];
+        match function.as_cell() {
+            Some(cell) if self.ty(value) != Elementary::Bool => {
+                self.push(Kind::copy(self.ty(value)), [cell; 3], target);
+            }
+            _ => self.gates.push(Gate::new(&function, target)),
+        }
+        self.set(value, Function::cell(target));
+    }
+
+    /// A cell for a value: the slot that it will be stored to, if nothing touches that before, else one of its own.
+    fn target(&mut self, value: ValueId, ty: Elementary) -> u32 {
+        if let Some(store) = self.first_store[value.index()].filter(|store| *store > self.at)
+            && let Op::Store(slot, _) = self.program.instructions[store].op
+            && self.access_before.get(&store).is_none_or(|before| *before < self.at)
+        {
+            let cell = self.program.layout.slot(slot).offset;
+            self.release(cell, value);
+            return cell;
+        }
+        self.scratch(ty)
+    }
+
+    fn scratch(&mut self, ty: Elementary) -> u32 {
+        let cell = self.scratch_end.next_multiple_of(ty.size());
+        self.scratch_end = cell + ty.size();
+        self.scratch_most = self.scratch_most.max(self.scratch_end);
+        cell
+    }
+
+    /// Makes a slot's cell ready to be set to a value: whatever else is made of what it holds gets another cell.
+    fn release(&mut self, cell: u32, value: ValueId) {
+        for watcher in self.watchers.remove(&cell).unwrap_or_default() {
+            let made_of_it = self.values[watcher.index()].inputs().contains(&cell);
+            if watcher != value && self.uses[watcher.index()] > 0 && made_of_it {
+                let target = self.scratch(self.ty(watcher));
+                self.compute(watcher, target);
+            }
+        }
+    }
+}
+
+/// A BOOL operation on BOOLs.
+#[derive(Clone, Copy)]
+struct Boolean(Op);
+
+/// The operation, if it is one on BOOLs only.
+fn boolean(program: &Program, instruction: Instruction) -> Option<Boolean> {
+    let is_bool = |value: ValueId| program.instructions[value.index()].ty == Elementary::Bool;
+    let all = instruction.ty == Elementary::Bool && instruction.op.operands().all(is_bool);
+    all.then_some(Boolean(instruction.op))
+}
+
+impl Boolean {
+    fn apply(self, [a, b, c]: [u16; 3]) -> u16 {
+        match self.0 {
+            Op::Unary(Unary::Not, _) => !a,
+            Op::Binary(Binary::And, ..) => a & b,
+            Op::Binary(Binary::Or, ..) => a | b,
+            Op::Binary(Binary::Xor, ..) => a ^ b,
+            Op::Compare(op, ..) => compare(op, a, b),
+            Op::Select(..) => a & b | !a & c,
+            // A conversion; the verifier leaves no other on BOOLs.
+            _ => a,
+        }
+    }
+}
+
+fn offset(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
