@@ -88,5 +88,12 @@ fn motor(trace: impl FnOnce(&Layout) -> Box<dyn Trace>) {
 #[test]
 fn preview() {
     let file = std::fs::File::create("/tmp/preview.svg").expect("x");
-    motor(|layout| Box::new(SvgTrace::new("motor <1>", Signal::all(layout), Period { start: 0, end: 120 * CYCLE, cycle: CYCLE }, file)));
+    motor(|layout| {
+        Box::new(SvgTrace::new(
+            "motor <1>",
+            Signal::all(layout),
+            Period { start: 0, end: 120 * CYCLE, cycle: CYCLE },
+            file,
+        ))
+    });
 }

@@ -29,7 +29,10 @@ struct Wave {
 
 impl<W: Write> fmt::Debug for VcdTrace<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("VcdTrace").field("waves", &self.waves).field("last_time", &self.last_time).finish_non_exhaustive()
+        f.debug_struct("VcdTrace")
+            .field("waves", &self.waves)
+            .field("last_time", &self.last_time)
+            .finish_non_exhaustive()
     }
 }
 

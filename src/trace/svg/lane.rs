@@ -102,7 +102,8 @@ impl Lane {
     /// Adds a piece behind the last, which by that is complete and may be joined to the one before.
     fn push(&mut self, start: i64, end: i64, shape: Shape) {
         if let [.., before, last] = self.pieces.as_mut_slice() {
-            let short = |piece: &Piece| piece.shape == Shape::Busy || piece.end.saturating_sub(piece.start) < self.shortest;
+            let short =
+                |piece: &Piece| piece.shape == Shape::Busy || piece.end.saturating_sub(piece.start) < self.shortest;
             if short(before) && short(last) {
                 *before = Piece { start: before.start, end: last.end, shape: Shape::Busy };
                 self.pieces.pop();

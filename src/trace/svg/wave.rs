@@ -148,7 +148,9 @@ impl Band<'_> {
             draw_to(&mut line, 'L', &[end, y(to)]);
             let next = lane.pieces.get(index + 1);
             // A rise that stays where it arrived took the preset time.
-            let stays = next.is_some_and(|next| matches!(next.shape, Shape::Level(_)) && next.end.saturating_sub(next.start) > cycle);
+            let stays = next.is_some_and(|next| {
+                matches!(next.shape, Shape::Level(_)) && next.end.saturating_sub(next.start) > cycle
+            });
             if let Shape::Ramp { from: 0, to, .. } = piece.shape
                 && stays
             {
@@ -214,11 +216,7 @@ impl Band<'_> {
 
 /// A value as a bus shows it.
 fn label(value: Value) -> String {
-    if value.ty() == Elementary::Time {
-        duration(value.bits().cast_signed())
-    } else {
-        Spelled(value).to_string()
-    }
+    if value.ty() == Elementary::Time { duration(value.bits().cast_signed()) } else { Spelled(value).to_string() }
 }
 
 /// Whether a value's text fits into so many pixels.
