@@ -1,11 +1,11 @@
 //! `rung run`: a program in real time, on a simulated panel.
 
 mod count;
-mod duration;
 mod engine;
 mod machine;
 mod plain;
 mod points;
+mod time;
 mod view;
 
 use std::io::IsTerminal;
@@ -18,7 +18,8 @@ use std::time::Instant;
 use rung_runtime::host::End;
 use rung_runtime::{Fault, Stopped};
 
-use super::{Failure, Loaded, load_checked, print, write_whole};
+use super::load::Loaded;
+use super::{Failure, duration, load_checked, print, write_whole};
 use crate::check::Checked;
 use crate::diagnostic::Code;
 use crate::elementary::Value;
@@ -33,11 +34,11 @@ use points::Points;
 
 /// Cycles that a scan may take by default, and the least time that it then may take in any case: a shorter
 /// one would trip on a busy machine.
-const WATCHDOG_CYCLES: u64 = 10;
-const LEAST_DEFAULT_WATCHDOG: u64 = 100_000_000;
+const WATCHDOG_CYCLES: i64 = 10;
+const LEAST_DEFAULT_WATCHDOG: i64 = 100_000_000;
 
 /// The longest tick and cycle, an hour.
-const LONGEST_CYCLE: u64 = 3_600_000_000_000;
+const LONGEST_CYCLE: i64 = 3_600_000_000_000;
 
 /// Runs a program in real time on a simulated panel, until Ctrl-C
 #[derive(Debug, clap::Args)]
@@ -46,19 +47,19 @@ pub(super) struct Arguments {
     file: PathBuf,
     /// Time from one scan to the next, a multiple of the tick
     #[arg(long, value_parser = duration::parse, default_value = "10ms", value_name = "TIME")]
-    cycle: u64,
+    cycle: i64,
     /// Period of the tick interrupt, which is the grain of all times
     #[arg(long, value_parser = duration::parse, default_value = "1ms", value_name = "TIME")]
-    tick: u64,
+    tick: i64,
     /// Which engine runs it
     #[arg(long, value_enum, default_value = "jit")]
     engine: Kind,
     /// End after this time
     #[arg(long = "for", value_parser = duration::parse, value_name = "TIME")]
-    length: Option<u64>,
+    length: Option<i64>,
     /// A cycle that takes longer stops the program; 10 cycles, but at least 100 ms, unless given
     #[arg(long, value_parser = duration::parse, value_name = "TIME")]
-    watchdog: Option<u64>,
+    watchdog: Option<i64>,
     /// Print plain lines also on a terminal
     #[arg(long)]
     plain: bool,
@@ -78,7 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image would be larger than 1 GiB"))?;
     let program = optimise(lowered);
     let engine = Engine::new(arguments.engine, &program)
-        .map_err(|error| Failure::new(Code::CannotCompile, format!("{error}")))?;
+        .map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
     let compiled_in = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     let points = Points::new(&checked, &program.layout);
     let inputs = initial_inputs(&arguments.set, &points)?;
@@ -107,7 +108,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&format!("ended after {}\n", plain::figures(&shared.statistics)))?;
     match outcome {
         Err(Lost::Hung) => {
-            let limit = duration::rounded(timing.watchdog);
+            let limit = time::rounded(timing.watchdog);
             let message = format!("no sign of life for {limit}: the field or the scan hangs; the outputs are off");
             Err(Failure::new(Code::Stopped, message))
         }
@@ -120,19 +121,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn timing(arguments: &Arguments) -> Result<Timing, Failure> {
     let bad = |message: String| Failure::new(Code::BadTiming, message);
     let &Arguments { cycle, tick, .. } = arguments;
-    if !cycle.is_multiple_of(tick) {
-        let (cycle, tick) = (duration::rounded(cycle), duration::rounded(tick));
+    if cycle % tick != 0 {
+        let (cycle, tick) = (time::exact(cycle), time::exact(tick));
         return Err(bad(format!("the cycle, {cycle}, is no multiple of the tick, {tick}")));
     }
-    let count = |number: u64| u32::try_from(number).ok().and_then(NonZeroU32::new);
+    let count = |number: i64| u32::try_from(number).ok().and_then(NonZeroU32::new);
     let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), cycle <= LONGEST_CYCLE) else {
         return Err(bad("a tick may have at most 4 s, a cycle an hour".to_owned()));
     };
     Ok(Timing {
         tick,
         cycle: ticks,
-        ends_at: arguments.length.map(|length| length.div_ceil(u64::from(tick.get()))),
-        watchdog: arguments.watchdog.unwrap_or((cycle * WATCHDOG_CYCLES).max(LEAST_DEFAULT_WATCHDOG)),
+        ends_at: arguments.length.map(|length| length.unsigned_abs().div_ceil(u64::from(tick.get()))),
+        watchdog: arguments.watchdog.unwrap_or((cycle * WATCHDOG_CYCLES).max(LEAST_DEFAULT_WATCHDOG)).unsigned_abs(),
     })
 }
 
@@ -176,10 +177,10 @@ fn description(
         counts.blocks,
         program.layout.size(),
         program.instructions.len(),
-        duration::rounded(compiled_in),
+        time::rounded(compiled_in),
         arguments.engine.name(),
-        duration::rounded(arguments.cycle),
-        duration::rounded(arguments.tick),
+        time::exact(arguments.cycle),
+        time::exact(arguments.tick),
     )
 }
 
@@ -197,7 +198,7 @@ fn ended(outcome: Outcome<Engine>, arguments: &Arguments, loaded: &Loaded, progr
     };
     match fault {
         Fault::Watchdog { took, limit } => {
-            let (took, limit) = (duration::rounded(took), duration::rounded(limit));
+            let (took, limit) = (time::rounded(took), time::rounded(limit));
             let message = format!("a cycle took {took}, longer than the watchdog's {limit}; the outputs are off");
             Err(Failure::new(Code::Stopped, message))
         }
@@ -229,7 +230,7 @@ fn differ(engine: &Engine, arguments: &Arguments, loaded: &Loaded, program: &Pro
         others => format!("; {others} other values differ"),
     };
     let scan = replay.scans.last().map_or(0, |scan| scan.now);
-    let reason = format!("{}: {values}{rung}{others}, in the scan at {}", difference.name, duration::exact(scan));
+    let reason = format!("{}: {values}{rung}{others}, in the scan at {}", difference.name, time::exact(scan));
     replay.program = arguments.file.display().to_string();
     replay.source_hash = source_hash(&loaded.source);
     replay.reason.clone_from(&reason);

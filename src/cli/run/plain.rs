@@ -7,11 +7,11 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use rung_runtime::Scan;
-use rung_runtime::host::Statistics;
+use rung_runtime::host::{Histogram, Statistics};
 
 use super::machine::{Change, Machine};
 use super::points::{Point, shown};
-use super::{Failure, duration, print};
+use super::{Failure, print, time};
 
 /// Lines in a second about one variable, and about all of them.
 const MOST_OF_ONE: u32 = 10;
@@ -80,9 +80,9 @@ fn moment(nanoseconds: i64) -> String {
 
 /// The statistics on one line.
 pub(super) fn figures(statistics: &Statistics) -> String {
-    let quantiles = |histogram: &rung_runtime::host::Histogram| {
+    let quantiles = |histogram: &Histogram| {
         let all = histogram.quantiles();
-        let [p50, p99, max] = [all.p50, all.p99, all.max].map(duration::rounded);
+        let [p50, p99, max] = [all.p50, all.p99, all.max].map(time::rounded);
         format!("{p50} / {p99} / {max}")
     };
     format!(

@@ -1,6 +1,6 @@
 //! What a person sees and sets while a program runs: its inputs, outputs, variables and blocks by name.
 
-use super::duration;
+use super::{duration, time};
 use crate::check::{Checked, Type};
 use crate::elementary::{Elementary, Value, f32_of};
 use crate::ladder::library::StandardBlock;
@@ -106,7 +106,7 @@ impl Block {
 /// A value as a person reads it: `0`, `-12`, `T#1.5s`, `0.1`.
 pub(super) fn shown(value: Value) -> String {
     match value.ty() {
-        Elementary::Time => duration::exact(value.bits().cast_signed()),
+        Elementary::Time => time::literal(value.bits().cast_signed()),
         Elementary::Real => format!("{:?}", f32_of(value.bits())),
         Elementary::Lreal => format!("{:?}", f64::from_bits(value.bits())),
         _ => value.as_integer().unwrap_or_default().to_string(),
@@ -128,7 +128,7 @@ pub(super) fn read(ty: Elementary, text: &str) -> Option<Value> {
             let nanoseconds = if magnitude == "0" || magnitude.eq_ignore_ascii_case("0s") {
                 0
             } else {
-                i64::try_from(duration::parse(magnitude).ok()?).ok()?
+                duration::parse(&magnitude.to_ascii_lowercase()).ok()?
             };
             Some(Value::time(if negative { -nanoseconds } else { nanoseconds }))
         }

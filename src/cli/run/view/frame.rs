@@ -3,8 +3,8 @@
 use rung_runtime::host::{Histogram, Statistics};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-use super::super::duration::rounded;
 use super::super::points::{Block, Point, Points, shown};
+use super::super::time::{exact, rounded};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
 
@@ -13,7 +13,7 @@ pub(super) struct State<'a> {
     pub title: &'a str,
     pub engine: &'a str,
     /// Nanoseconds.
-    pub cycle: u64,
+    pub cycle: i64,
     /// Nanoseconds since the controller started.
     pub now: i64,
     pub statistics: &'a Statistics,
@@ -79,7 +79,7 @@ fn head(state: &State<'_>) -> Vec<String> {
             "{}   engine {}   cycle {}   {}.{} s",
             state.title,
             state.engine,
-            rounded(state.cycle),
+            exact(state.cycle),
             seconds / 10,
             seconds % 10
         ),
@@ -234,7 +234,7 @@ mod tests {
     #[test]
     fn everything_that_runs_is_shown() {
         let expected = "\
-plant   engine jit   cycle 10.0 ms   12.3 s
+plant   engine jit   cycle 10ms   12.3 s
                p50      p99      max           0 cycles
 scan          0 ns     0 ns     0 ns           0 overruns
 lateness      0 ns     0 ns     0 ns           0 skipped
