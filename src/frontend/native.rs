@@ -30,7 +30,3 @@ pub const MOST_DIAGNOSTICS: usize = 200;
 pub fn parse(source: &Source) -> Parsed {
     parser::Parser::new(source).program()
 }
-/// Prints native text.
-pub fn print(_program: &crate::ladder::Program) -> String {
-    String::new()
-}
