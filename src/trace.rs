@@ -77,10 +77,8 @@ impl Signal {
 
     /// Everything that can be observed, in order of declaration.
     pub fn all(layout: &Layout) -> Vec<Self> {
-        let signal = |observed: &Observed| Self {
-            name: observed.name.clone(),
-            slot: layout.slot(observed.slot).clone(),
-        };
+        let signal =
+            |observed: &Observed| Self { name: observed.name.clone(), slot: layout.slot(observed.slot).clone() };
         layout.observed().iter().map(signal).collect()
     }
 

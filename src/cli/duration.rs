@@ -3,7 +3,8 @@
 use crate::simulate::decimal::parse_scaled;
 
 /// Units, the longer names first: the nanoseconds of a unit are its factor times ten to the power of its decimals.
-const UNITS: [(&str, u32, i64); 6] = [("ns", 0, 1), ("us", 3, 1), ("ms", 6, 1), ("s", 9, 1), ("m", 9, 60), ("h", 9, 3600)];
+const UNITS: [(&str, u32, i64); 6] =
+    [("ns", 0, 1), ("us", 3, 1), ("ms", 6, 1), ("s", 9, 1), ("m", 9, 60), ("h", 9, 3600)];
 
 /// Reads a duration, a decimal and its unit (`ns`, `us`, `ms`, `s`, `m` or `h`), in nanoseconds.
 ///

@@ -37,7 +37,8 @@ const NAME_COLUMNS: usize = 36;
 /// Lanes from which a second axis stands above them.
 const MANY_LANES: usize = 16;
 
-const STYLE: &str = "text { font-family: 'DejaVu Sans Mono', Menlo, Consolas, monospace; font-size: 12px; fill: #1d2733 }
+const STYLE: &str =
+    "text { font-family: 'DejaVu Sans Mono', Menlo, Consolas, monospace; font-size: 12px; fill: #1d2733 }
 .title { font-size: 15px; font-weight: bold }
 .small { font-size: 10px; fill: #66727f }
 .value { font-size: 10.5px }
