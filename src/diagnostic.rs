@@ -57,6 +57,7 @@ codes! {
     CannotRead = 103 Error "the file cannot be read",
     CannotWrite = 104 Error "the file cannot be written",
     UnknownFormat = 105 Error "the format of the file is not known",
+    BadOptions = 106 Error "options that do not go together",
     // Syntax.
     UnexpectedToken = 201 Error "something else was expected here",
     UnexpectedCharacter = 202 Error "this character has no meaning here",
@@ -94,6 +95,7 @@ codes! {
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",
+    TooManyWarnings = 603 Warning "too many warnings",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",
@@ -102,6 +104,7 @@ codes! {
     BadLogic = 801 Error "logic that cannot be used",
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
+    EnginesDiffer = 902 Error "two engines compute different values",
 }
 
 impl fmt::Display for Code {

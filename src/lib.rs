@@ -6,12 +6,18 @@
 //! turns that into one straight-line scan of [`logic`], which [`opt`] improves and [`engine`] interprets or compiles.
 
 pub mod check;
+pub mod cli;
 pub mod diagnostic;
+pub mod draw;
 pub mod elementary;
 pub mod engine;
 pub mod frontend;
+pub mod generate;
 pub mod ladder;
 pub mod logic;
 pub mod lower;
 pub mod opt;
+pub mod replay;
+pub mod simulate;
 pub mod source;
+pub mod trace;

@@ -1,13 +1,39 @@
 //! Lowering: from a checked program to one straight-line scan of logic.
+//!
+//! [`slots`] gives every variable, pin and memory its slot; [`network`] and [`expression`] turn the rungs into
+//! primitives, element by element in the order of the drawing; [`blocks`] has each function block's rule. The code
+//! that comes out is naive on purpose: nothing here may simplify or reorder, that is for the passes.
+
+mod blocks;
+mod expression;
+mod network;
+mod slots;
+
 use crate::check::Checked;
-use crate::logic::Program;
 use crate::logic::image::{EarlierLayout, ImageTooLarge};
-use crate::source::Source;
+use crate::logic::{Builder, Origin, Program};
+use crate::source::{Source, Span};
 
 /// Lowers a checked program; slots that an earlier layout has keep their offsets.
 ///
 /// # Errors
-/// [`ImageTooLarge`]
-pub fn lower(_checked: &Checked, _source: &Source, _earlier: Option<&EarlierLayout>) -> Result<Program, ImageTooLarge> {
-    unimplemented!()
+/// [`ImageTooLarge`] when the variables and memories do not fit an image.
+pub fn lower(checked: &Checked, source: &Source, earlier: Option<&EarlierLayout>) -> Result<Program, ImageTooLarge> {
+    let line = |span: Span| u32::try_from(source.line(span.start)).unwrap_or(0);
+    let (slots, layout) = slots::allocate(checked, line, earlier)?;
+    let mut lowering =
+        Lowering { logic: Builder::new(checked.name(), layout), edges: slots.edges.iter(), slots: &slots };
+    for rung in checked.rungs() {
+        lowering.rung(rung);
+        lowering.logic.end_section(Origin { label: rung.label.clone(), line: line(rung.span) });
+    }
+    Ok(lowering.logic.finish())
+}
+
+/// The state of lowering one program.
+struct Lowering<'a> {
+    logic: Builder,
+    slots: &'a slots::Slots,
+    /// The memories of the edge contacts and edge coils that are still to come, in the order of the drawing.
+    edges: std::slice::Iter<'a, crate::logic::SlotId>,
 }

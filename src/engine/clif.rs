@@ -1,1 +1,266 @@
-//! One chunk of logic to one Cranelift function.
+//! One chunk of logic to one Cranelift function and its machine code, for any target.
+//!
+//! Pure: nothing is installed, linked or run here. A function takes all its pointers as arguments, so that its code
+//! has no relocation and can be put anywhere, compiled in parallel and replaced while others run:
+//!
+//! ```text
+//! extern "C" fn(base0: *mut u8, now: i64, base1: *mut u8, …)     each base: image + Chunk::bases[i]
+//! ```
+//!
+//! Code is straight line: it must never branch on data, but for the operations in [`BRANCHING`]. It computes
+//! exactly what [`evaluate`](crate::logic::evaluate) says, with every value in integer registers; BOOL is the low
+//! byte of 8 or 32 bits, of which the others mean nothing.
+
+mod integer;
+mod lower;
+mod place;
+mod real;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use std::fmt;
+use std::ops::Range;
+
+use cranelift_codegen::Context;
+use cranelift_codegen::control::ControlPlane;
+use cranelift_codegen::ir::{AbiParam, Function, Signature, UserFuncName, types};
+use cranelift_codegen::isa::{CallConv, TargetIsa};
+use cranelift_codegen::settings::{self, Configurable, SetError};
+use cranelift_frontend::FunctionBuilderContext;
+use target_lexicon::Architecture;
+
+use crate::logic::{Binary, Program};
+
+/// Pointers into the image that each chunk is given, so that most offsets from one of them are short.
+pub const BASES: usize = 5;
+
+/// Why there is no code.
+#[derive(Debug)]
+pub enum CompileError {
+    /// Cranelift, as it was built, has no back end for this machine, or refuses a setting.
+    NoBackEnd(String),
+    /// Cranelift refused a chunk, as one with too many values for it.
+    Chunk {
+        /// The sections of the chunk.
+        sections: Range<usize>,
+        /// What Cranelift says.
+        reason: String,
+    },
+    /// No executable memory was to be had.
+    Memory(std::io::Error),
+}
+
+impl fmt::Display for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoBackEnd(reason) => write!(f, "no code generator for this machine: {reason}"),
+            Self::Chunk { sections, reason } => {
+                write!(f, "sections {} to {} cannot be compiled: {reason}", sections.start, sections.end)
+            }
+            Self::Memory(error) => write!(f, "no executable memory: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for CompileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Memory(error) => Some(error),
+            Self::NoBackEnd(_) | Self::Chunk { .. } => None,
+        }
+    }
+}
+
+/// An operation whose machine code holds a conditional branch on some targets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Branching {
+    /// The operation.
+    pub op: Binary,
+    /// The architectures, as their triples name them.
+    pub architectures: &'static [&'static str],
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// Every operation that is not straight line everywhere; all others are, and x86-64 has none of these.
+pub const BRANCHING: &[Branching] = &[
+    Branching {
+        op: Binary::Divide,
+        architectures: &["aarch64", "riscv64"],
+        reason: "Cranelift tests a divisor that is not constant for zero; the branch is never taken",
+    },
+    Branching {
+        op: Binary::Remainder,
+        architectures: &["aarch64", "riscv64"],
+        reason: "Cranelift tests a divisor that is not constant for zero; the branch is never taken",
+    },
+];
+
+/// The machine code of a chunk.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Chunk {
+    /// The sections that it was made from.
+    pub sections: Range<usize>,
+    /// The code, without relocations: instructions, then the constants that they read.
+    pub code: Vec<u8>,
+    /// Bytes of `code` that are instructions.
+    pub instruction_bytes: usize,
+    /// What its first byte must be aligned to, a power of two.
+    pub alignment: u32,
+    /// Offsets into the image, in bytes, of the pointers that it takes.
+    pub bases: [u32; BASES],
+    /// Where in the code a section's instructions begin, in the order of the code: `(offset, section)`. A section
+    /// without code of its own is left out.
+    pub marks: Vec<(u32, usize)>,
+}
+
+/// The settings that made the fastest code and the quickest compile; they hold for every target.
+///
+/// # Errors
+/// When this Cranelift knows one of them no longer.
+pub fn flags() -> Result<settings::Flags, SetError> {
+    let mut builder = settings::builder();
+    // `speed` makes larger code here and undoes the sinking of loads; the passes over logic do its work.
+    builder.set("opt_level", "none")?;
+    builder.set("regalloc_algorithm", "backtracking")?;
+    builder.set("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" })?;
+    builder.set("is_pic", "false")?;
+    builder.set("unwind_info", "false")?;
+    builder.set("enable_probestack", "false")?;
+    builder.set("machine_code_cfg_info", "false")?;
+    Ok(settings::Flags::new(builder))
+}
+
+/// Compiles chunks one after another, keeping Cranelift's memory between them.
+pub struct Compiler<'a> {
+    program: &'a Program,
+    isa: &'a dyn TargetIsa,
+    context: Context,
+    builder_context: FunctionBuilderContext,
+}
+
+impl fmt::Debug for Compiler<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Compiler({}, {})", self.program.name, self.isa.triple())
+    }
+}
+
+impl<'a> Compiler<'a> {
+    /// A compiler of a verified program for a target.
+    pub fn new(program: &'a Program, isa: &'a dyn TargetIsa) -> Self {
+        Self { program, isa, context: Context::new(), builder_context: FunctionBuilderContext::new() }
+    }
+
+    /// Compiles one of the program's [chunks](Program::chunks).
+    ///
+    /// # Errors
+    /// [`CompileError::Chunk`] when Cranelift's limits are passed.
+    pub fn chunk(&mut self, sections: Range<usize>) -> Result<Chunk, CompileError> {
+        let bases = self.build(sections.clone());
+        let refused = |reason: String| CompileError::Chunk { sections: sections.clone(), reason };
+        let compiled = self
+            .context
+            .compile(self.isa, &mut ControlPlane::default())
+            .map_err(|error| refused(error.inner.to_string()))?;
+        if !compiled.buffer.relocs().is_empty() {
+            return Err(refused("the code refers to something outside of itself".to_owned()));
+        }
+        let mut marks: Vec<(u32, usize)> = Vec::new();
+        let mut instruction_bytes = 0;
+        for location in compiled.buffer.get_srclocs_sorted() {
+            instruction_bytes = location.end as usize;
+            let Some(section) = section_at(location.loc) else { continue };
+            if marks.last().is_none_or(|(_, last)| *last != section) {
+                marks.push((location.start, section));
+            }
+        }
+        let alignment = self.isa.function_alignment().minimum.max(compiled.buffer.alignment);
+        Ok(Chunk { sections, code: compiled.code_buffer().to_vec(), instruction_bytes, alignment, bases, marks })
+    }
+
+    /// Makes the function of a chunk in `self.context`.
+    fn build(&mut self, sections: Range<usize>) -> [u32; BASES] {
+        self.context.clear();
+        let name = UserFuncName::user(0, u32::try_from(sections.start).unwrap_or(u32::MAX));
+        self.context.func = Function::with_name_signature(name, signature(self.isa));
+        lower::chunk(self.program, sections, self.isa, &mut self.context.func, &mut self.builder_context)
+    }
+}
+
+/// What every chunk's function takes.
+fn signature(isa: &dyn TargetIsa) -> Signature {
+    let mut signature = Signature::new(CallConv::triple_default(isa.triple()));
+    let pointer = AbiParam::new(isa.pointer_type());
+    signature.params.push(pointer);
+    signature.params.push(AbiParam::new(types::I64));
+    signature.params.extend(std::iter::repeat_n(pointer, BASES - 1));
+    signature
+}
+
+/// Source locations carry the section, counted from 1 since 0 may stand for none.
+fn location_of(section: usize) -> cranelift_codegen::ir::SourceLoc {
+    cranelift_codegen::ir::SourceLoc::new(u32::try_from(section + 1).unwrap_or(u32::MAX - 1))
+}
+
+fn section_at(location: cranelift_codegen::ir::SourceLoc) -> Option<usize> {
+    if location.is_default() { None } else { (location.bits() as usize).checked_sub(1) }
+}
+
+/// The Cranelift functions of all chunks as text, each section headed by its label.
+pub fn text(program: &Program, isa: &dyn TargetIsa) -> String {
+    let mut compiler = Compiler::new(program, isa);
+    let mut out = String::new();
+    for sections in program.chunks() {
+        let bases = compiler.build(sections.clone());
+        out.push_str(&format!(
+            "; sections {} to {}, bases at image + {bases:?}\n",
+            sections.start,
+            sections.end.saturating_sub(1)
+        ));
+        let mut last = None;
+        for line in compiler.context.func.display().to_string().lines() {
+            // A line with a source location starts with it: `@0001`, in hexadecimal.
+            let tag = line.split_whitespace().next().and_then(|word| word.strip_prefix('@'));
+            let section = tag.and_then(|tag| usize::from_str_radix(tag, 16).ok()).and_then(|tag| tag.checked_sub(1));
+            if section.is_some() && section != last {
+                last = section;
+                out.push_str(&heading(program, section.unwrap_or_default(), ";"));
+            }
+            out.push_str(line);
+            out.push('\n');
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// The line that announces a section in a listing. Control characters of a label are left out.
+pub(crate) fn heading(program: &Program, section: usize, comment: &str) -> String {
+    let Some(origin) = program.sections.get(section).and_then(|s| program.origins.get(s.origin as usize)) else {
+        return String::new();
+    };
+    let label: String = origin.label.chars().filter(|c| !c.is_control()).collect();
+    format!("{comment} {label} (line {})\n", origin.line)
+}
+
+/// What of a target decides how code is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct Target {
+    /// Whether the low byte of a 4-byte load at any address is the byte there, and the load can be part of AND and OR.
+    wide_loads: bool,
+    /// Whether a select becomes a branch, so that masks are wanted.
+    select_branches: bool,
+    /// How far below and above a pointer an access is short.
+    below: u32,
+    above: u32,
+}
+
+impl Target {
+    fn of(isa: &dyn TargetIsa) -> Self {
+        match isa.triple().architecture {
+            Architecture::X86_64 => Self { wide_loads: true, select_branches: false, below: 128, above: 127 },
+            Architecture::Riscv64(_) => Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 },
+            _ => Self { wide_loads: false, select_branches: false, below: 0, above: 4095 },
+        }
+    }
+}

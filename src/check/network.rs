@@ -1,0 +1,254 @@
+//! Rungs and their networks: contacts, coils, parallel branches and nodes.
+//!
+//! Beside checking, the walk follows power that is constantly FALSE: behind a contact or condition that is constantly
+//! so, and where only such power comes together. Behind a block nothing is known, for a block may turn power on. A
+//! rung is said to never conduct when it has coils or assignments, and such power is at every one of them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::Checker;
+use super::expression::constant;
+use super::model::{self, NodeId};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::{Elementary, Value};
+use crate::ladder::{self, ContactKind, ElementKind, Name, Rung};
+use crate::source::Span;
+
+/// What is known of the power at a point.
+#[derive(Clone, Copy)]
+pub(super) enum Power {
+    /// It may be TRUE.
+    Maybe,
+    /// It is always FALSE, because of what stands here.
+    Never(Span),
+}
+
+impl Power {
+    /// Of power that comes together.
+    fn or(self, other: Self) -> Self {
+        if matches!(other, Self::Maybe) { other } else { self }
+    }
+
+    /// Behind an element that never conducts.
+    fn and_never(self, span: Span) -> Self {
+        if matches!(self, Self::Maybe) { Self::Never(span) } else { self }
+    }
+}
+
+/// What is known of the rung that is walked.
+pub(super) struct Walk {
+    /// Its place among all rungs.
+    pub(super) rung: usize,
+    /// Whether it runs.
+    pub(super) enabled: bool,
+    nodes: HashMap<String, Node>,
+    /// Nodes that were fed.
+    fed: u32,
+    /// Whether anything in it has an effect.
+    active: bool,
+    /// Whether a coil or an assignment may have power.
+    conducts: bool,
+    /// What keeps the power from the first coil or assignment that has none.
+    barrier: Option<Span>,
+}
+
+struct Node {
+    id: NodeId,
+    power: Power,
+    /// Where it was first named.
+    span: Span,
+    /// Where a branch starts from it.
+    used: Option<Span>,
+    /// Whether a fault of it was reported.
+    faulty: bool,
+}
+
+impl Walk {
+    fn new(rung: usize, enabled: bool) -> Self {
+        Self { rung, enabled, nodes: HashMap::new(), fed: 0, active: false, conducts: false, barrier: None }
+    }
+
+    fn effect(&mut self, power: Power) {
+        self.active = true;
+        match power {
+            Power::Maybe => self.conducts = true,
+            Power::Never(span) => {
+                self.barrier.get_or_insert(span);
+            }
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// Checks all rungs but those nested too deeply; the result holds those that run.
+    pub(super) fn check_rungs(&mut self, too_deep: &HashSet<usize>) -> Vec<model::Rung> {
+        let program = self.program;
+        let mut names: HashMap<String, Span> = HashMap::new();
+        let mut rungs = Vec::with_capacity(program.rungs.len());
+        for (index, rung) in program.rungs.iter().enumerate() {
+            if let Some(name) = &rung.name {
+                if let Some(first) = names.get(&name.key()) {
+                    let message = format!("two rungs are called `{}`", name.text);
+                    let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
+                    self.report.push(problem.related(*first, "the first is here"));
+                } else {
+                    names.insert(name.key(), name.span);
+                }
+            }
+            if !too_deep.contains(&index) {
+                let checked = self.rung(rung, index);
+                rungs.extend(rung.enabled.then_some(checked));
+            }
+        }
+        rungs
+    }
+
+    fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
+        let mut walk = Walk::new(index, rung.enabled);
+        let (circuit, _) = self.circuit(&rung.circuit, Power::Maybe, &mut walk);
+        let mut unused: Vec<&Node> = walk.nodes.values().filter(|node| node.used.is_none()).collect();
+        unused.sort_by_key(|node| node.id.0);
+        for node in unused {
+            let problem = Diagnostic::new(Code::NodeMisuse, node.span, "no branch starts at this node");
+            self.report.push(problem.hint("its name at the start of a later branch continues from it"));
+        }
+        if !walk.active {
+            let message = format!("{} has no coil, block or assignment", self.rung_name(index));
+            self.report.push(Diagnostic::new(Code::EmptyRung, rung.span, message));
+        } else if let (false, Some(barrier)) = (walk.conducts, walk.barrier) {
+            let message = format!("{} can never conduct: no power passes here", self.rung_name(index));
+            let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
+            self.report.push(problem.hint("`rung off` keeps a rung from running"));
+        }
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(index), |name| name.text.clone());
+        model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
+    }
+
+    /// A rung by its name or else its number, for messages.
+    pub(super) fn rung_name(&self, index: usize) -> String {
+        match self.program.rungs.get(index).and_then(|rung| rung.name.as_ref()) {
+            Some(name) => format!("rung {}", name.text),
+            None => format!("rung {}", index + 1),
+        }
+    }
+
+    /// A circuit and the power on its right. What is faulty in it was reported and is left out.
+    pub(super) fn circuit(
+        &mut self,
+        circuit: &ladder::Circuit,
+        left: Power,
+        walk: &mut Walk,
+    ) -> (model::Circuit, Power) {
+        let mut right = Power::Never(circuit.span);
+        let mut met_right = false;
+        let mut branches = Vec::with_capacity(circuit.branches.len());
+        for branch in &circuit.branches {
+            let (from, mut power) = match &branch.from {
+                None => (None, left),
+                Some(name) => self.leave_node(name, walk),
+            };
+            let mut elements = Vec::with_capacity(branch.elements.len());
+            for element in &branch.elements {
+                let (element, after) = self.element(element, power, walk);
+                elements.extend(element);
+                power = after;
+            }
+            let to = branch.to.as_ref().map(|name| self.feed_node(name, power, walk));
+            if to.is_none() {
+                right = if met_right { right.or(power) } else { power };
+                met_right = true;
+            }
+            branches.push(model::Branch { from, elements, to });
+        }
+        (model::Circuit { branches }, right)
+    }
+
+    /// The node that a branch starts at, and its power.
+    fn leave_node(&mut self, name: &Name, walk: &mut Walk) -> (Option<NodeId>, Power) {
+        if let Some(node) = walk.nodes.get_mut(&name.key()) {
+            node.used.get_or_insert(name.span);
+            return (Some(node.id), node.power);
+        }
+        let message = format!("no branch before this one ends at node `{}`", name.text);
+        let problem = Diagnostic::new(Code::NodeMisuse, name.span, message);
+        self.report.push(problem.hint("all branches that feed a node stand before the first that starts from it"));
+        let node =
+            Node { id: NodeId(walk.fed), power: Power::Maybe, span: name.span, used: Some(name.span), faulty: true };
+        walk.nodes.insert(name.key(), node);
+        (None, Power::Maybe)
+    }
+
+    /// The node that a branch ends at.
+    fn feed_node(&mut self, name: &Name, power: Power, walk: &mut Walk) -> NodeId {
+        let Some(node) = walk.nodes.get_mut(&name.key()) else {
+            let id = NodeId(walk.fed);
+            walk.fed += 1;
+            walk.nodes.insert(name.key(), Node { id, power, span: name.span, used: None, faulty: false });
+            return id;
+        };
+        node.power = node.power.or(power);
+        if let (Some(used), false) = (node.used, node.faulty) {
+            node.faulty = true;
+            let message = format!("node `{}` is fed after a branch started from it", name.text);
+            let problem =
+                Diagnostic::new(Code::NodeMisuse, name.span, message).related(used, "that branch starts here");
+            self.report.push(problem.hint("let this branch stand before that one"));
+        }
+        node.id
+    }
+
+    /// An element and the power on its right.
+    fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        match &element.kind {
+            ElementKind::Contact { kind, operand } => {
+                let operand = self.value(operand, Elementary::Bool);
+                let blocks = operand.as_ref().and_then(model::Expression::constant).is_some_and(|value| {
+                    // An edge of what never is so does not come either.
+                    match kind {
+                        ContactKind::Open | ContactKind::Rising => !value.is_true(),
+                        ContactKind::Closed | ContactKind::Falling => value.is_true(),
+                    }
+                });
+                let right = if blocks { left.and_never(element.span) } else { left };
+                (operand.map(|operand| model::Element::Contact { kind: *kind, operand }), right)
+            }
+            ElementKind::Condition(condition) => {
+                let condition = self.value(condition, Elementary::Bool);
+                let blocks = condition.as_ref() == Some(&constant(Value::bool(false)));
+                let right = if blocks { left.and_never(element.span) } else { left };
+                (condition.map(model::Element::Condition), right)
+            }
+            ElementKind::Coil { kind, target } => {
+                walk.effect(left);
+                let written = self.write(target);
+                let target =
+                    written.and_then(|(place, ty)| self.is_bool(ty, "a coil writes", target.span).then_some(place));
+                if let Some(target) = target {
+                    self.note_coil(*kind, target, element.span, walk);
+                }
+                (target.map(|target| model::Element::Coil { kind: *kind, target }), left)
+            }
+            ElementKind::Assignment { target, value } => {
+                walk.effect(left);
+                let written = self.write(target);
+                let value = match written {
+                    Some((_, ty)) => self.value(value, ty),
+                    // Only for what is wrong in it.
+                    None => self.operand(value).and(None),
+                };
+                let assignment =
+                    written.zip(value).map(|((target, _), value)| model::Element::Assignment { target, value });
+                (assignment, left)
+            }
+            ElementKind::Block(call) => {
+                walk.active = true;
+                let call = self.call(call, element.span, walk);
+                (call.map(model::Element::Call), Power::Maybe)
+            }
+            ElementKind::Parallel(circuit) => {
+                let (circuit, right) = self.circuit(circuit, left, walk);
+                (Some(model::Element::Parallel(circuit)), right)
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The names of a program and what they stand for. Names are looked up without regard to case; nothing outside of
+//! this module may compare spellings.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+
+use super::address::Extent;
+use super::model::{Variable, VariableId};
+use super::spelling::{self, Budget};
+use crate::ladder::{Name, key};
+
+/// One variable or instance.
+pub(super) struct Entry {
+    pub(super) variable: Variable,
+    pub(super) state: State,
+    /// Whether its initial value was written down.
+    pub(super) explicit_initial: bool,
+    /// Whether anything names it.
+    pub(super) mentioned: bool,
+}
+
+/// How much of a variable is known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum State {
+    /// All of it.
+    Known,
+    /// All but the initial value, which is computed later.
+    Pending,
+    /// Its type, or a constant's value, could not be made out; that was reported, and its uses are not.
+    Broken,
+}
+
+/// [`key`], without a copy where the name is its own key, as most are.
+fn folded(name: &str) -> Cow<'_, str> {
+    let is_key = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
+    if name.bytes().all(is_key) { Cow::Borrowed(name) } else { Cow::Owned(key(name)) }
+}
+
+/// Every name, address and variable.
+#[derive(Default)]
+pub(super) struct Scope {
+    entries: Vec<Entry>,
+    names: HashMap<String, VariableId>,
+    /// The first variable at each address, whose storage later ones share.
+    pub(super) addresses: HashMap<Extent, VariableId>,
+    /// The undeclared names that were reported; each is once.
+    unknown: HashSet<String>,
+    budget: Budget,
+}
+
+impl Scope {
+    /// The variable of that name.
+    pub(super) fn find(&self, name: &Name) -> Option<VariableId> {
+        self.names.get(folded(&name.text).as_ref()).copied()
+    }
+
+    /// Adds a variable under its name. Where there is one of that name already, `Err` is that one.
+    pub(super) fn add(&mut self, variable: Variable, state: State) -> Result<VariableId, VariableId> {
+        let next = self.next_id();
+        let first = *self.names.entry(key(&variable.name)).or_insert(next);
+        if first == next { Ok(self.add_nameless(variable, state)) } else { Err(first) }
+    }
+
+    /// Adds a variable that is found by its address only.
+    pub(super) fn add_nameless(&mut self, variable: Variable, state: State) -> VariableId {
+        let id = self.next_id();
+        self.entries.push(Entry { variable, state, explicit_initial: false, mentioned: false });
+        id
+    }
+
+    fn next_id(&self) -> VariableId {
+        // A declaration takes more than a byte of a source, so that 32 bits are enough.
+        VariableId(u32::try_from(self.entries.len()).unwrap_or(u32::MAX))
+    }
+
+    pub(super) fn entry(&self, id: VariableId) -> &Entry {
+        &self.entries[id.index()]
+    }
+
+    pub(super) fn entry_mut(&mut self, id: VariableId) -> &mut Entry {
+        &mut self.entries[id.index()]
+    }
+
+    pub(super) fn ids(&self) -> impl Iterator<Item = VariableId> + use<> {
+        (0..self.next_id().0).map(VariableId)
+    }
+
+    /// The variable whose storage a variable uses: the first at its address, or itself.
+    pub(super) fn storage(&self, id: VariableId) -> VariableId {
+        self.entry(id).variable.shares.unwrap_or(id)
+    }
+
+    /// Whether this is the first time that an undeclared name is met.
+    pub(super) fn first_unknown(&mut self, name: &Name) -> bool {
+        self.unknown.insert(name.key())
+    }
+
+    /// The declared name nearest to one that is not declared.
+    pub(super) fn suggest(&mut self, name: &str) -> Option<&str> {
+        let candidates = self.entries.iter().map(|entry| entry.variable.name.as_str());
+        spelling::nearest(name, candidates, &mut self.budget)
+    }
+
+    pub(super) fn into_variables(self) -> Vec<Variable> {
+        self.entries.into_iter().map(|entry| entry.variable).collect()
+    }
+}

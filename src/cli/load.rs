@@ -1,0 +1,76 @@
+//! Reading a program's file, in whatever format it is.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::{Failure, report};
+use crate::check::{Checked, check};
+use crate::diagnostic::{self, Code, Diagnostic, any_error};
+use crate::frontend::{self, Parsed};
+use crate::ladder::Program;
+use crate::source::{MAXIMUM_BYTES, Source};
+
+/// A file that was read and parsed, with or without errors.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    /// The file.
+    pub source: Source,
+    /// The program, as far as it could be read.
+    pub program: Program,
+    /// What the front end said.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The bytes of a file, or of the standard input for `-`; no more than one past [`MAXIMUM_BYTES`].
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    let most = MAXIMUM_BYTES as u64 + 1;
+    let mut bytes = Vec::new();
+    let read = if path == Path::new("-") {
+        std::io::stdin().lock().take(most).read_to_end(&mut bytes)
+    } else {
+        std::fs::File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes))
+    };
+    match read {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(Failure::new(Code::CannotRead, format!("{} cannot be read: {error}", path.display()))),
+    }
+}
+
+/// Reads and parses a program.
+///
+/// # Errors
+/// When the file cannot be read. What is wrong inside it is in [`Loaded::diagnostics`].
+pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    let bytes = read_bytes(path)?;
+    let (source, undecoded) = match Source::decode(path.display().to_string(), &bytes) {
+        Ok(source) => (source, None),
+        Err((source, problem)) => (source, Some(problem)),
+    };
+    drop(bytes);
+    let Parsed { program, mut diagnostics } = frontend::parse(&source);
+    if let Some(problem) = undecoded {
+        // What the parser says of the readable part would only distract.
+        diagnostics = vec![problem];
+    }
+    Ok(Loaded { source, program, diagnostics })
+}
+
+/// Reads, parses and checks a program that is to run; warnings are printed.
+///
+/// # Errors
+/// When it cannot be read or has an error.
+pub(crate) fn load_checked(path: &Path) -> Result<(Loaded, Checked), Failure> {
+    let mut loaded = load(path)?;
+    if any_error(&loaded.diagnostics) {
+        return Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics));
+    }
+    let (checked, found) = check(&loaded.program);
+    loaded.diagnostics.extend(found);
+    match checked {
+        Some(checked) => {
+            report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
+            Ok((loaded, checked))
+        }
+        None => Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics)),
+    }
+}

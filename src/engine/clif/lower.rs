@@ -1,0 +1,376 @@
+//! The walk over a chunk's instructions: which Cranelift value holds which value of logic, and when loads are made.
+//!
+//! A load is made where its value is used, so that it becomes part of the instruction that uses it, and at the
+//! latest before its slot is stored. All else is made in order.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::isa::TargetIsa;
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+
+use super::place::{self, Stored};
+use super::{BASES, Target, location_of};
+use crate::elementary::Elementary;
+use crate::logic::{Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
+
+/// Fills an empty function with a chunk; gives the offsets of the pointers that it takes.
+pub(super) fn chunk(
+    program: &Program,
+    sections: Range<usize>,
+    isa: &dyn TargetIsa,
+    function: &mut Function,
+    context: &mut FunctionBuilderContext,
+) -> [u32; BASES] {
+    let target = Target::of(isa);
+    let bases = place::bases(program, sections.clone(), target);
+    let mut builder = FunctionBuilder::new(function, context);
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    builder.seal_block(block);
+    let first = if sections.is_empty() { 0 } else { program.section_range(sections.start).start };
+    let end = if sections.is_empty() { 0 } else { program.section_range(sections.end - 1).end };
+    let mut uses = vec![0; end - first];
+    for operand in program.instructions[first..end].iter().flat_map(|instruction| instruction.op.operands()) {
+        uses[operand.index() - first] += 1;
+    }
+    let params = builder.block_params(block);
+    let now = params[1];
+    let mut pointers = [(0, params[0]); BASES];
+    for (index, pointer) in pointers.iter_mut().enumerate() {
+        *pointer = (bases[index], params[if index == 0 { 0 } else { index + 1 }]);
+    }
+    let mut lowering = Lowering {
+        program,
+        first,
+        target,
+        builder,
+        now,
+        pointers,
+        held: vec![None; end - first],
+        uses,
+        pending: HashMap::new(),
+        stored: Stored::before(program, sections.start),
+        section: sections.start,
+    };
+    for section in sections {
+        lowering.section = section;
+        lowering.builder.set_srcloc(location_of(section));
+        for index in program.section_range(section) {
+            lowering.instruction(index, program.instructions[index]);
+        }
+    }
+    lowering.builder.ins().return_(&[]);
+    lowering.builder.finalize(isa.frontend_config());
+    bases
+}
+
+pub(super) struct Lowering<'a, 'f> {
+    program: &'a Program,
+    /// The chunk's first instruction.
+    first: usize,
+    pub(super) target: Target,
+    pub(super) builder: FunctionBuilder<'f>,
+    now: Value,
+    /// Offsets and values of the pointers.
+    pointers: [(u32, Value); BASES],
+    /// By instruction of the chunk: what holds its value, once made.
+    held: Vec<Option<Value>>,
+    /// By instruction of the chunk: uses that are still to come.
+    uses: Vec<u32>,
+    /// Loads of a slot since it was last stored.
+    pending: HashMap<SlotId, Vec<ValueId>>,
+    stored: Stored,
+    section: usize,
+}
+
+impl Lowering<'_, '_> {
+    fn instruction(&mut self, index: usize, Instruction { ty, op }: Instruction) {
+        let id = ValueId(u32::try_from(index).unwrap_or(u32::MAX));
+        if self.uses[index - self.first] == 0 && !matches!(op, Op::Store(..)) {
+            return;
+        }
+        let value = match op {
+            // Made where they are used.
+            Op::Constant(_) => return,
+            Op::Load(slot) => {
+                self.pending.entry(slot).or_default().push(id);
+                return;
+            }
+            Op::Unary(Unary::Not, a) if ty == Elementary::Bool && self.is_late_not(id, a) => return,
+            Op::Now => self.now,
+            Op::Store(slot, a) => return self.store(slot, a),
+            Op::Unary(op, a) if ty.is_real() => self.real_unary(op, ty, a),
+            Op::Unary(op, a) => self.integer_unary(op, ty, a),
+            Op::Binary(op, a, b) if ty == Elementary::Bool => self.bool_binary(op, a, b),
+            Op::Binary(op, a, b) if ty.is_real() => self.real_binary(op, ty, a, b),
+            Op::Binary(op, a, b) => self.integer_binary(op, ty, a, b),
+            Op::Compare(op, a, b) => self.compare(op, a, b),
+            Op::Select(condition, a, b) => {
+                let condition = self.flag(condition);
+                let (a, b) = self.alike(a, b);
+                self.choose(condition, a, b)
+            }
+            Op::Convert(a) => self.convert(a, ty),
+        };
+        self.held[index - self.first] = Some(value);
+    }
+
+    pub(super) fn type_of(&self, id: ValueId) -> Elementary {
+        self.program.instructions[id.index()].ty
+    }
+
+    /// The constant that a value is.
+    pub(super) fn constant(&self, id: ValueId) -> Option<u64> {
+        match self.program.instructions[id.index()].op {
+            Op::Constant(bits) => Some(bits),
+            Op::Now
+            | Op::Load(_)
+            | Op::Store(..)
+            | Op::Unary(..)
+            | Op::Binary(..)
+            | Op::Compare(..)
+            | Op::Select(..)
+            | Op::Convert(_) => None,
+        }
+    }
+
+    /// Whether a NOT is left to its only use. Not so that of a NOT, or a long chain of them would nest as deep.
+    fn is_late_not(&self, id: ValueId, operand: ValueId) -> bool {
+        let inner = self.program.instructions[operand.index()].op;
+        self.uses[id.index() - self.first] == 1 && !matches!(inner, Op::Unary(Unary::Not, _))
+    }
+
+    /// Uses a value: a BOOL in either of its forms.
+    pub(super) fn value(&mut self, id: ValueId) -> Value {
+        let place = id.index() - self.first;
+        self.uses[place] = self.uses[place].saturating_sub(1);
+        if let Some(value) = self.held[place] {
+            return value;
+        }
+        let Instruction { ty, op } = self.program.instructions[id.index()];
+        match op {
+            Op::Constant(bits) => self.integer_constant(holder(ty), bits),
+            Op::Load(slot) => {
+                let (value, wide) = self.load(slot);
+                // A wide load costs nothing where it is used, and a register where it is kept.
+                if self.uses[place] > 0 && !wide {
+                    self.held[place] = Some(value);
+                }
+                value
+            }
+            Op::Unary(Unary::Not, a) => self.integer_unary(Unary::Not, ty, a),
+            Op::Now
+            | Op::Store(..)
+            | Op::Unary(..)
+            | Op::Binary(..)
+            | Op::Compare(..)
+            | Op::Select(..)
+            | Op::Convert(_) => unreachable!("operands come before, are no stores, and only the above are late"),
+        }
+    }
+
+    /// Bits of a type as a constant.
+    pub(super) fn integer_constant(&mut self, ty: Type, bits: u64) -> Value {
+        // Cranelift wants a narrow constant zero-extended.
+        let mask = if ty.bits() < 64 { (1 << ty.bits()) - 1 } else { u64::MAX };
+        self.builder.ins().iconst(ty, (bits & mask).cast_signed())
+    }
+
+    /// The pointer nearest below or around an offset, and the way from there.
+    fn address(&self, offset: u32) -> (Value, i32) {
+        let mut best = (self.pointers[0].1, i64::MAX);
+        for (base, pointer) in self.pointers {
+            let way = i64::from(offset) - i64::from(base);
+            let short = (-i64::from(self.target.below)..=i64::from(self.target.above)).contains(&way);
+            if short {
+                return (pointer, i32::try_from(way).unwrap_or_default());
+            }
+            if way.abs() < best.1.abs() {
+                best = (pointer, way);
+            }
+        }
+        // An image has at most 2^30 bytes.
+        (best.0, i32::try_from(best.1).unwrap_or_default())
+    }
+
+    /// Reads a slot; also whether it was done by a wide load.
+    fn load(&mut self, slot: SlotId) -> (Value, bool) {
+        let slot = self.program.layout.slot(slot);
+        let (pointer, way) = self.address(slot.offset);
+        let exact = MemFlagsData::trusted();
+        let signed = slot.ty.is_signed();
+        let wide =
+            slot.ty == Elementary::Bool && self.target.wide_loads && !self.stored.lately(slot.offset, self.section);
+        let ins = self.builder.ins();
+        let value = match slot.ty.size() {
+            1 if wide => ins.load(types::I32, MemFlagsData::new().with_notrap(), pointer, way),
+            1 if signed => ins.sload8(types::I32, exact, pointer, way),
+            1 => ins.uload8(types::I32, exact, pointer, way),
+            2 if signed => ins.sload16(types::I32, exact, pointer, way),
+            2 => ins.uload16(types::I32, exact, pointer, way),
+            4 => ins.load(types::I32, exact, pointer, way),
+            _ => ins.load(types::I64, exact, pointer, way),
+        };
+        (value, wide)
+    }
+
+    fn store(&mut self, id: SlotId, value: ValueId) {
+        let slot = self.program.layout.slot(id);
+        let value = match self.constant(value) {
+            // A constant of the slot's width becomes part of the store.
+            Some(bits) => self.integer_constant(memory(slot.ty), bits),
+            None => self.value(value),
+        };
+        for load in self.pending.remove(&id).unwrap_or_default() {
+            let place = load.index() - self.first;
+            if self.uses[place] > 0 && self.held[place].is_none() {
+                self.held[place] = Some(self.load(id).0);
+            }
+        }
+        let (pointer, way) = self.address(slot.offset);
+        let flags = MemFlagsData::trusted();
+        let width = self.builder.func.dfg.value_type(value).bytes();
+        let ins = self.builder.ins();
+        match slot.ty.size() {
+            size if size == width => ins.store(flags, value, pointer, way),
+            1 => ins.istore8(flags, value, pointer, way),
+            _ => ins.istore16(flags, value, pointer, way),
+        };
+        self.stored.store(slot.offset, slot.ty.size(), self.section);
+    }
+
+    /// Two values of one type, held alike: of two BOOLs, both in 32 bits if they are, else both in 8.
+    pub(super) fn alike(&mut self, a: ValueId, b: ValueId) -> (Value, Value) {
+        let (a, b) = (self.value(a), self.value(b));
+        self.narrowed(a, b)
+    }
+
+    fn narrowed(&mut self, a: Value, b: Value) -> (Value, Value) {
+        if self.builder.func.dfg.value_type(a) == self.builder.func.dfg.value_type(b) {
+            (a, b)
+        } else {
+            (self.byte_of(a), self.byte_of(b))
+        }
+    }
+
+    /// The low 8 bits; of a BOOL, all that it has.
+    fn byte_of(&mut self, value: Value) -> Value {
+        if self.builder.func.dfg.value_type(value) == types::I8 {
+            value
+        } else {
+            self.builder.ins().ireduce(types::I8, value)
+        }
+    }
+
+    /// A BOOL as 8 bits, all of which count.
+    pub(super) fn flag(&mut self, id: ValueId) -> Value {
+        let value = self.value(id);
+        self.byte_of(value)
+    }
+
+    fn bool_binary(&mut self, op: Binary, a: ValueId, b: ValueId) -> Value {
+        match op {
+            Binary::And => {
+                // x AND NOT y: one instruction where the target has it. Of y's inverted bits only the lowest is
+                // right, and x has no other.
+                let (kept, inverted) = match (self.late_not(a), self.late_not(b)) {
+                    (_, Some(inner)) => (a, Some(inner)),
+                    (Some(inner), None) => (b, Some(inner)),
+                    (None, None) => (a, None),
+                };
+                if let Some(inner) = inverted {
+                    let (inner, kept) = self.alike(inner, kept);
+                    let inner = self.builder.ins().bnot(inner);
+                    self.builder.ins().band(kept, inner)
+                } else {
+                    let (a, b) = self.alike(a, b);
+                    self.builder.ins().band(a, b)
+                }
+            }
+            Binary::Or => {
+                let (a, b) = self.alike(a, b);
+                self.builder.ins().bor(a, b)
+            }
+            Binary::Xor => {
+                let (a, b) = self.alike(a, b);
+                self.builder.ins().bxor(a, b)
+            }
+            Binary::Add
+            | Binary::Subtract
+            | Binary::Multiply
+            | Binary::Divide
+            | Binary::Remainder
+            | Binary::Minimum
+            | Binary::Maximum
+            | Binary::ShiftLeft
+            | Binary::ShiftRight
+            | Binary::RotateLeft
+            | Binary::RotateRight => unreachable!("not an operation on BOOLs in a verified program"),
+        }
+    }
+
+    /// What a NOT that was left to its use inverts.
+    fn late_not(&self, id: ValueId) -> Option<ValueId> {
+        match self.program.instructions[id.index()].op {
+            Op::Unary(Unary::Not, inner)
+                if self.held[id.index() - self.first].is_none() && self.is_late_not(id, inner) =>
+            {
+                Some(inner)
+            }
+            _ => None,
+        }
+    }
+
+    fn compare(&mut self, op: Compare, a: ValueId, b: ValueId) -> Value {
+        let ty = self.type_of(a);
+        if ty.is_real() {
+            return self.real_compare(op, ty, a, b);
+        }
+        let signed = ty.is_signed();
+        let condition = match op {
+            Compare::Equal => IntCC::Equal,
+            Compare::NotEqual => IntCC::NotEqual,
+            Compare::Less if signed => IntCC::SignedLessThan,
+            Compare::Less => IntCC::UnsignedLessThan,
+            Compare::LessOrEqual if signed => IntCC::SignedLessThanOrEqual,
+            Compare::LessOrEqual => IntCC::UnsignedLessThanOrEqual,
+            Compare::Greater if signed => IntCC::SignedGreaterThan,
+            Compare::Greater => IntCC::UnsignedGreaterThan,
+            Compare::GreaterOrEqual if signed => IntCC::SignedGreaterThanOrEqual,
+            Compare::GreaterOrEqual => IntCC::UnsignedGreaterThanOrEqual,
+        };
+        let (a, b) = if ty == Elementary::Bool { (self.flag(a), self.flag(b)) } else { (self.value(a), self.value(b)) };
+        self.builder.ins().icmp(condition, a, b)
+    }
+
+    /// `a` where the 8 bits of `condition` are not zero, else `b`; never a branch.
+    pub(super) fn choose(&mut self, condition: Value, a: Value, b: Value) -> Value {
+        if !self.target.select_branches {
+            return self.builder.ins().select(condition, a, b);
+        }
+        let ty = self.builder.func.dfg.value_type(a);
+        let one = if ty == types::I8 { condition } else { self.builder.ins().uextend(ty, condition) };
+        let mask = self.builder.ins().ineg(one);
+        let differ = self.builder.ins().bxor(a, b);
+        let chosen = self.builder.ins().band(differ, mask);
+        self.builder.ins().bxor(b, chosen)
+    }
+}
+
+/// What holds a value of a type: BOOL in 32 bits (or 8), integers in 32 or 64 with their sign or zeros above.
+pub(super) fn holder(ty: Elementary) -> Type {
+    if ty.size() == 8 { types::I64 } else { types::I32 }
+}
+
+fn memory(ty: Elementary) -> Type {
+    match ty.size() {
+        1 => types::I8,
+        2 => types::I16,
+        4 => types::I32,
+        _ => types::I64,
+    }
+}

@@ -1,0 +1,93 @@
+//! Executable memory: chunks are copied in, the pages become executable and read-only, and they are called.
+//!
+//! Pages are never writable and executable at once, and are given back when dropped.
+#![expect(unsafe_code, reason = "calling compiled code is the JIT's purpose")]
+
+use std::io;
+
+use memmap2::{Mmap, MmapMut};
+
+use crate::engine::clif::{BASES, Chunk};
+
+/// The type of a chunk's function: the image at each base, with the time second.
+type Function = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8);
+
+/// Installed code.
+#[derive(Debug)]
+pub(super) struct Code {
+    calls: Vec<Call>,
+    /// Bytes that an image must have.
+    reach: usize,
+    /// Where `calls` point to; `None` without chunks.
+    _pages: Option<Mmap>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Call {
+    function: Function,
+    bases: [u32; BASES],
+}
+
+impl Code {
+    /// Copies chunks into memory of their own, for images of at least `image_size` bytes.
+    pub(super) fn install(chunks: &[Chunk], image_size: usize) -> io::Result<Self> {
+        let mut starts = Vec::with_capacity(chunks.len());
+        let mut size = 0usize;
+        for chunk in chunks {
+            size = size.next_multiple_of(chunk.alignment as usize);
+            starts.push(size);
+            size += chunk.code.len();
+        }
+        if size == 0 {
+            return Ok(Self { calls: Vec::new(), reach: image_size, _pages: None });
+        }
+        let mut pages = MmapMut::map_anon(size)?;
+        for (chunk, start) in chunks.iter().zip(&starts) {
+            pages[*start..start + chunk.code.len()].copy_from_slice(&chunk.code);
+        }
+        let pages = pages.make_exec()?;
+        synchronise(&pages)?;
+        let call = |(chunk, start): (&Chunk, &usize)| {
+            let entry = pages[*start..].as_ptr();
+            // SAFETY: at `entry` lies the whole of a function that Cranelift compiled for this machine with the
+            // signature `Function` and the C calling convention; `_pages` keeps it there as long as the call.
+            let function = unsafe { std::mem::transmute::<*const u8, Function>(entry) };
+            Call { function, bases: chunk.bases }
+        };
+        let calls = chunks.iter().zip(&starts).map(call).collect();
+        Ok(Self { calls, reach: image_size, _pages: Some(pages) })
+    }
+
+    /// Runs every chunk in order.
+    ///
+    /// # Panics
+    /// When the image is too short.
+    pub(super) fn run(&self, image: &mut [u8], now: i64) {
+        assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
+        let image = image.as_mut_ptr();
+        for Call { function, bases: [a, b, c, d, e] } in &self.calls {
+            let at = |base: u32| image.wrapping_add(base as usize);
+            // SAFETY: the chunk reads and writes the slots of its layout, at the pointers' offsets from the image,
+            // and of BOOLs up to 3 bytes more; all are below the layout's size, and the image is as long. The
+            // image is borrowed mutably, so that nobody else sees it.
+            unsafe { function(at(*a), now, at(*b), at(*c), at(*d), at(*e)) };
+        }
+    }
+}
+
+/// Makes the processor fetch what was written: x86-64 does so by itself.
+#[cfg(target_arch = "x86_64")]
+#[expect(clippy::unnecessary_wraps, reason = "elsewhere it can fail")]
+fn synchronise(_: &Mmap) -> io::Result<()> {
+    Ok(())
+}
+
+/// Makes the processor, on every core, fetch what was written.
+#[cfg(not(target_arch = "x86_64"))]
+fn synchronise(pages: &Mmap) -> io::Result<()> {
+    // SAFETY: the range is mapped and readable.
+    let cleared = unsafe { wasmtime_internal_jit_icache_coherence::clear_cache(pages.as_ptr().cast(), pages.len()) };
+    cleared
+        .and_then(|()| wasmtime_internal_jit_icache_coherence::pipeline_flush_mt())
+        .map_err(|error| io::Error::other(error.to_string()))
+}

@@ -1,0 +1,141 @@
+//! Function blocks: each block's rule, written once over its pins and states.
+//!
+//! A rule computes as if the block always ran. That a block whose EN is FALSE keeps its outputs and states is
+//! added here, so that no rule needs to know.
+
+mod bistables;
+mod counters;
+mod edges;
+mod timers;
+
+use super::Lowering;
+use super::slots::InstanceSlots;
+use crate::check::{Call, Wire};
+use crate::elementary::Elementary;
+use crate::ladder::library::StandardBlock;
+use crate::logic::{Builder, SlotId, ValueId};
+
+/// What a block computes.
+pub(super) struct Rule {
+    /// What it remembers beside its outputs: names that set the slots apart, and types. All start at 0.
+    pub(super) states: &'static [(&'static str, Elementary)],
+    /// Computes one run, setting outputs and states.
+    pub(super) run: fn(&mut Run<'_>),
+}
+
+/// The rule of each block.
+pub(super) fn rule(block: StandardBlock) -> &'static Rule {
+    match block {
+        StandardBlock::Ton => &timers::TON,
+        StandardBlock::Tof => &timers::TOF,
+        StandardBlock::Tp => &timers::TP,
+        StandardBlock::Ctu => &counters::CTU,
+        StandardBlock::Ctd => &counters::CTD,
+        StandardBlock::Ctud => &counters::CTUD,
+        StandardBlock::RTrig => &edges::R_TRIG,
+        StandardBlock::FTrig => &edges::F_TRIG,
+        StandardBlock::Sr => &bistables::SR,
+        StandardBlock::Rs => &bistables::RS,
+    }
+}
+
+/// One run of a block: what its rule computes with. Pins and states are named by their place in their list.
+pub(super) struct Run<'a> {
+    /// The instructions so far.
+    pub(super) logic: &'a mut Builder,
+    slots: &'a InstanceSlots,
+    inputs: Vec<ValueId>,
+    enable: Option<ValueId>,
+}
+
+impl Run<'_> {
+    /// The value on an input.
+    pub(super) fn input(&self, pin: usize) -> ValueId {
+        self.inputs[pin]
+    }
+
+    /// What an output holds.
+    pub(super) fn output(&mut self, pin: usize) -> ValueId {
+        self.logic.load(self.slots.outputs[pin])
+    }
+
+    /// What a state holds.
+    pub(super) fn state(&mut self, state: usize) -> ValueId {
+        self.logic.load(self.slots.states[state])
+    }
+
+    /// Sets an output.
+    pub(super) fn set_output(&mut self, pin: usize, value: ValueId) {
+        self.set(self.slots.outputs[pin], value);
+    }
+
+    /// Sets a state.
+    pub(super) fn set_state(&mut self, state: usize, value: ValueId) {
+        self.set(self.slots.states[state], value);
+    }
+
+    fn set(&mut self, slot: SlotId, value: ValueId) {
+        let value = match self.enable {
+            None => value,
+            Some(enable) => {
+                let old = self.logic.load(slot);
+                self.logic.select(enable, value, old)
+            }
+        };
+        self.logic.store(slot, value);
+    }
+
+    /// Whether a signal has become TRUE since the block last ran, by a BOOL state that follows it.
+    fn rises(&mut self, signal: ValueId, state: usize) -> ValueId {
+        let before = self.state(state);
+        self.set_state(state, signal);
+        let was_off = self.logic.not(before);
+        self.logic.and(signal, was_off)
+    }
+}
+
+impl Lowering<'_> {
+    /// A call; gives the power on its right.
+    pub(super) fn call(&mut self, call: &Call, left: ValueId, nodes: &mut Vec<Option<ValueId>>) -> ValueId {
+        let slots = self.slots.instance(call.instance);
+        let mut wired = vec![None; slots.inputs.len()];
+        let mut wire = |lowering: &mut Self, pin: usize, value: ValueId| {
+            wired[pin] = Some(value);
+            if let Some(slot) = slots.inputs[pin] {
+                lowering.logic.store(slot, value);
+            }
+        };
+        if let Some(pin) = call.power_input {
+            wire(self, pin, left);
+        }
+        for input in &call.inputs {
+            let value = match &input.wire {
+                Wire::Value(expression) => self.expression(expression),
+                Wire::Circuit(circuit) => {
+                    let rail = self.logic.bool(true);
+                    self.circuit(circuit, rail, nodes)
+                }
+            };
+            wire(self, input.pin, value);
+        }
+        let inputs = wired.iter().zip(&slots.inputs).map(|(wired, slot)| match (wired, slot) {
+            (Some(value), _) => *value,
+            (None, Some(slot)) => self.logic.load(*slot),
+            (None, None) => unreachable!("an input that a call leaves unwired has a slot"),
+        });
+        let inputs = inputs.collect();
+        let enable = if call.power_input.is_none() { Some(left) } else { None };
+        (rule(call.block).run)(&mut Run { logic: &mut self.logic, slots, inputs, enable });
+        for (pin, target) in &call.outputs {
+            let value = self.logic.load(slots.outputs[*pin]);
+            match enable {
+                None => self.write(*target, value),
+                Some(enable) => self.write_if(enable, *target, value),
+            }
+        }
+        match call.power_output {
+            Some(pin) => self.logic.load(slots.outputs[pin]),
+            None => left,
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The bistables of IEC 61131-3, 6.6.3.5.2: the output is the memory.
+
+use super::{Rule, Run};
+
+/// Set wins: `Q1 := S1 OR (NOT R AND Q1)`.
+pub(super) const SR: Rule = Rule { states: &[], run: sr };
+/// Reset wins: `Q1 := NOT R1 AND (S OR Q1)`.
+pub(super) const RS: Rule = Rule { states: &[], run: rs };
+
+fn sr(run: &mut Run<'_>) {
+    let (set, reset, q) = (run.input(0), run.input(1), run.output(0));
+    let not_reset = run.logic.not(reset);
+    let held = run.logic.and(not_reset, q);
+    let q = run.logic.or(set, held);
+    run.set_output(0, q);
+}
+
+fn rs(run: &mut Run<'_>) {
+    let (set, reset, q) = (run.input(0), run.input(1), run.output(0));
+    let not_reset = run.logic.not(reset);
+    let set_or_held = run.logic.or(set, q);
+    let q = run.logic.and(not_reset, set_or_held);
+    run.set_output(0, q);
+}

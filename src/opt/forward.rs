@@ -1,0 +1,50 @@
+//! A load of a slot whose value is at hand becomes that value.
+//!
+//! Only near: a value that was stored within the last [`WINDOW`] sections, or loaded in this one. Farther, values
+//! that wait in registers would push each other out to the stack, which costs more than loading again.
+
+use std::collections::HashMap;
+
+use super::rewrite::rewrite;
+use crate::logic::{Op, Program, SlotId, ValueId};
+
+/// Sections for which a stored value is kept.
+const WINDOW: usize = 6;
+
+/// See the module.
+pub(super) fn forward(program: Program) -> Program {
+    /// A value that a slot holds, and the last section in which it is used for that.
+    struct Known {
+        value: ValueId,
+        until: usize,
+    }
+    let mut known: HashMap<SlotId, Known> = HashMap::new();
+    let mut chunk = None;
+    rewrite(program, |output, place, instruction| {
+        if chunk.replace(place.chunk) != Some(place.chunk) {
+            known.clear();
+        }
+        match instruction.op {
+            Op::Load(slot) => {
+                if let Some(known) = known.get(&slot).filter(|known| place.section <= known.until) {
+                    return Some(known.value);
+                }
+                let value = output.emit(instruction.ty, instruction.op);
+                known.insert(slot, Known { value, until: place.section });
+                Some(value)
+            }
+            Op::Store(slot, value) => {
+                known.insert(slot, Known { value, until: place.section + WINDOW });
+                output.emit(instruction.ty, instruction.op);
+                None
+            }
+            Op::Constant(_)
+            | Op::Now
+            | Op::Unary(..)
+            | Op::Binary(..)
+            | Op::Compare(..)
+            | Op::Select(..)
+            | Op::Convert(_) => Some(output.emit(instruction.ty, instruction.op)),
+        }
+    })
+}

@@ -1,0 +1,93 @@
+//! Copying a program with some instructions replaced: what the passes are written with. Keeps sections, origins
+//! and chunks.
+
+use crate::elementary::Elementary;
+use crate::logic::{Instruction, Op, Program, Unary, ValueId};
+
+/// The program that is being made.
+#[derive(Debug)]
+pub(super) struct Output {
+    instructions: Vec<Instruction>,
+}
+
+impl Output {
+    /// Adds an instruction.
+    pub(super) fn emit(&mut self, ty: Elementary, op: Op) -> ValueId {
+        // No copy is longer than 2^32 instructions: passes add few, and a program is far shorter.
+        let value = ValueId(u32::try_from(self.instructions.len()).unwrap_or(u32::MAX));
+        self.instructions.push(Instruction { ty, op });
+        value
+    }
+
+    /// Adds a constant, in register form.
+    pub(super) fn constant(&mut self, ty: Elementary, bits: u64) -> ValueId {
+        self.emit(ty, Op::Constant(bits))
+    }
+
+    /// Adds the inverse of a BOOL, or finds it.
+    pub(super) fn not(&mut self, value: ValueId) -> ValueId {
+        match self.op(value) {
+            Op::Unary(Unary::Not, inner) => inner,
+            Op::Constant(bits) => self.constant(Elementary::Bool, bits ^ 1),
+            _ => self.emit(Elementary::Bool, Op::Unary(Unary::Not, value)),
+        }
+    }
+
+    /// What defines a value of the output.
+    pub(super) fn op(&self, value: ValueId) -> Op {
+        self.instructions[value.index()].op
+    }
+
+    /// The type of a value of the output.
+    pub(super) fn ty(&self, value: ValueId) -> Elementary {
+        self.instructions[value.index()].ty
+    }
+
+    /// The constant that a value of the output is.
+    pub(super) fn constant_of(&self, value: ValueId) -> Option<u64> {
+        if let Op::Constant(bits) = self.op(value) { Some(bits) } else { None }
+    }
+}
+
+/// Where in a program an instruction stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Its index in the old program.
+    pub(super) index: usize,
+    /// Its section.
+    pub(super) section: usize,
+    /// Its chunk.
+    pub(super) chunk: usize,
+}
+
+/// Copies a program. For every instruction, with its operands already those of the copy, `visit` gives what stands
+/// for it there, having added what it wants; `None` where nothing does, as for stores and for what nobody uses.
+pub(super) fn rewrite(
+    mut program: Program,
+    mut visit: impl FnMut(&mut Output, Place, Instruction) -> Option<ValueId>,
+) -> Program {
+    let mut output = Output { instructions: Vec::with_capacity(program.instructions.len()) };
+    let mut copies: Vec<Option<ValueId>> = vec![None; program.instructions.len()];
+    let (mut start, mut chunk) = (0, 0);
+    for (section, part) in program.sections.iter_mut().enumerate() {
+        let end = part.end as usize;
+        chunk += usize::from(part.starts_chunk);
+        for index in start..end {
+            let Instruction { ty, op } = program.instructions[index];
+            let mut complete = true;
+            let op = op.map_operands(|operand| {
+                let copy = copies[operand.index()];
+                complete &= copy.is_some();
+                copy.unwrap_or(operand)
+            });
+            // An operand without a copy is one that a pass knew to be unused, and so is this.
+            if complete {
+                copies[index] = visit(&mut output, Place { index, section, chunk }, Instruction { ty, op });
+            }
+        }
+        start = end;
+        part.end = u32::try_from(output.instructions.len()).unwrap_or(u32::MAX);
+    }
+    program.instructions = output.instructions;
+    program
+}

@@ -1,0 +1,38 @@
+//! What nobody sees is removed: values without a use, and stores that are overwritten in their own section before
+//! anything loads the slot. Nobody looks at the image within a scan.
+
+use std::collections::HashSet;
+
+use super::rewrite::rewrite;
+use crate::logic::{Op, Program};
+
+/// See the module.
+pub(super) fn sweep(program: Program) -> Program {
+    let mut needed = vec![false; program.instructions.len()];
+    for section in (0..program.sections.len()).rev() {
+        // Slots that this section stores, later than where we are and with no load between.
+        let mut overwritten = HashSet::new();
+        for index in program.section_range(section).rev() {
+            match program.instructions[index].op {
+                Op::Store(slot, _) => needed[index] = overwritten.insert(slot),
+                Op::Load(slot) if needed[index] => {
+                    overwritten.remove(&slot);
+                }
+                Op::Constant(_)
+                | Op::Now
+                | Op::Load(_)
+                | Op::Unary(..)
+                | Op::Binary(..)
+                | Op::Compare(..)
+                | Op::Select(..)
+                | Op::Convert(_) => {}
+            }
+            if needed[index] {
+                program.instructions[index].op.operands().for_each(|operand| needed[operand.index()] = true);
+            }
+        }
+    }
+    rewrite(program, |output, place, instruction| {
+        needed[place.index].then(|| output.emit(instruction.ty, instruction.op))
+    })
+}

@@ -1,0 +1,17 @@
+//! Every engine and the independent evaluator compute the same: on step tables, on each element, on random programs.
+
+mod elements;
+mod random;
+mod steps;
+
+#[path = "../support"]
+mod support {
+    pub(crate) mod coverage;
+    pub(crate) mod dice;
+    pub(crate) mod drawing;
+    pub(crate) mod oracle;
+    pub(crate) mod random_program;
+    pub(crate) mod random_stimuli;
+    pub(crate) mod rig;
+    pub(crate) mod step_table;
+}

@@ -1,0 +1,143 @@
+//! What random programs really exercised, as a table.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use rung::elementary::Elementary;
+use rung::ladder::{Branch, Circuit, ElementKind, Expression, ExpressionKind, Program, Reference, Root, Step, Wire};
+
+use super::oracle::Activity;
+
+/// How often each kind of thing occurred and changed.
+#[derive(Default)]
+pub(crate) struct Coverage {
+    counts: BTreeMap<String, Count>,
+}
+
+#[derive(Default)]
+struct Count {
+    occurred: u64,
+    /// How many of them changed at least once.
+    alive: u64,
+    toggles: u64,
+}
+
+impl Coverage {
+    /// Adds what the elements of one program did.
+    pub(crate) fn add_activities(&mut self, activities: &[Activity]) {
+        for activity in activities {
+            let count = self.counts.entry(activity.kind.clone()).or_default();
+            count.occurred += 1;
+            count.alive += u64::from(activity.toggles > 0);
+            count.toggles += activity.toggles;
+        }
+    }
+
+    /// Adds what one program is made of.
+    pub(crate) fn add_program(&mut self, program: &Program) {
+        for variable in &program.variables {
+            let ty = variable.type_name.as_ref().map_or(Elementary::Bool.name(), |name| &name.text);
+            self.saw(&format!("declared {ty}"));
+            self.saw_if(variable.retain, "declared retain");
+            self.saw_if(variable.address.is_some(), "declared at an address");
+        }
+        for rung in &program.rungs {
+            self.saw_if(!rung.enabled, "rung that is off");
+            self.add_circuit(&rung.circuit);
+        }
+    }
+
+    /// The kinds that should occur and change but did not.
+    pub(crate) fn missing<'a>(&self, kinds: &[&'a str]) -> Vec<&'a str> {
+        let missing = |kind: &&&str| self.counts.get(**kind).is_none_or(|count| count.toggles == 0);
+        kinds.iter().filter(missing).copied().collect()
+    }
+
+    fn saw(&mut self, kind: &str) {
+        self.counts.entry(format!("- {kind}")).or_default().occurred += 1;
+    }
+
+    fn saw_if(&mut self, seen: bool, kind: &str) {
+        if seen {
+            self.saw(kind);
+        }
+    }
+
+    fn add_circuit(&mut self, circuit: &Circuit) {
+        for Branch { from, elements, to, .. } in &circuit.branches {
+            self.saw_if(from.is_some() || to.is_some(), "branch at a node");
+            self.saw_if(elements.is_empty(), "branch without elements");
+            for element in elements {
+                match &element.kind {
+                    ElementKind::Contact { operand, .. } => self.add_expression(operand),
+                    ElementKind::Coil { target, .. } => self.add_reference(target),
+                    ElementKind::Condition(condition) => self.add_expression(condition),
+                    ElementKind::Assignment { target, value } => {
+                        self.add_reference(target);
+                        self.add_expression(value);
+                    }
+                    ElementKind::Parallel(circuit) => self.add_circuit(circuit),
+                    ElementKind::Block(call) => {
+                        self.saw_if(call.power_output.is_some(), "call with a chosen power output");
+                        for argument in &call.arguments {
+                            match &argument.wire {
+                                Wire::Value(value) => {
+                                    self.saw("pin with a value");
+                                    self.add_expression(value);
+                                }
+                                Wire::Circuit(circuit) => {
+                                    self.saw("pin with a circuit");
+                                    self.add_circuit(circuit);
+                                }
+                                Wire::Output(target) => {
+                                    self.saw("pin with an output");
+                                    self.add_reference(target);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_expression(&mut self, expression: &Expression) {
+        match &expression.kind {
+            ExpressionKind::Literal(_) => self.saw("operand literal"),
+            ExpressionKind::Read(reference) => self.add_reference(reference),
+            ExpressionKind::Unary(operator, operand) => {
+                self.saw(&format!("operator {operator:?}"));
+                self.add_expression(operand);
+            }
+            ExpressionKind::Binary(operator, left, right) => {
+                self.saw(&format!("operator {}", operator.symbol()));
+                self.add_expression(left);
+                self.add_expression(right);
+            }
+        }
+    }
+
+    fn add_reference(&mut self, reference: &Reference) {
+        self.saw_if(matches!(reference.root, Root::Address(_)), "operand address");
+        for step in &reference.steps {
+            self.saw(match step {
+                Step::Member(_) => "operand member",
+                Step::Bit(..) => "operand bit",
+            });
+        }
+    }
+}
+
+impl fmt::Display for Coverage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{:34} {:>9} {:>9} {:>9}", "", "occurred", "changed", "changes")?;
+        for (kind, count) in &self.counts {
+            if kind.starts_with('-') {
+                writeln!(f, "{kind:34} {:>9}", count.occurred)?;
+            } else {
+                writeln!(f, "{kind:34} {:>9} {:>9} {:>9}", count.occurred, count.alive, count.toggles)?;
+            }
+        }
+        Ok(())
+    }
+}

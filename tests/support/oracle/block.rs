@@ -1,0 +1,211 @@
+//! The standard function blocks, each as the little machine that the semantics describe.
+
+use rung::elementary::{Elementary, Value};
+use rung::ladder::library::StandardBlock;
+
+/// One instance: its pins and what it remembers.
+#[derive(Clone, Debug)]
+pub(crate) struct Instance {
+    block: StandardBlock,
+    /// What its inputs were given last; at first 0.
+    pub inputs: Vec<Value>,
+    /// What its outputs hold; at first 0.
+    pub outputs: Vec<Value>,
+    state: State,
+    start: i64,
+    /// For a timer last scan's IN; for others the memory of the rising edge of each BOOL input.
+    previous: [bool; 2],
+}
+
+/// Where a timer is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum State {
+    Idle,
+    Timing,
+    Expired,
+}
+
+impl Instance {
+    /// An instance that never ran.
+    pub(crate) fn new(block: StandardBlock) -> Self {
+        let zeros = |pins: &[rung::ladder::library::Pin]| pins.iter().map(|pin| Value::default_of(pin.ty)).collect();
+        Self {
+            block,
+            inputs: zeros(block.inputs()),
+            outputs: zeros(block.outputs()),
+            state: State::Idle,
+            start: 0,
+            previous: [false; 2],
+        }
+    }
+
+    /// Runs it once on the inputs that it has.
+    pub(crate) fn execute(&mut self, now: i64) {
+        match self.block {
+            StandardBlock::Ton => self.on_delay(now),
+            StandardBlock::Tof => self.off_delay(now),
+            StandardBlock::Tp => self.pulse(now),
+            StandardBlock::Ctu => self.count_up(),
+            StandardBlock::Ctd => self.count_down(),
+            StandardBlock::Ctud => self.count_up_and_down(),
+            StandardBlock::RTrig => {
+                let rises = self.rises(0, 0);
+                self.put_bool(0, rises);
+            }
+            StandardBlock::FTrig => {
+                // Q := NOT CLK AND NOT M; M := NOT CLK.
+                let open = !self.bool(0);
+                self.put_bool(0, open && !self.previous[0]);
+                self.previous[0] = open;
+            }
+            StandardBlock::Sr => {
+                let q1 = self.bool(0) || (!self.bool(1) && self.outputs[0].is_true());
+                self.put_bool(0, q1);
+            }
+            StandardBlock::Rs => {
+                let q1 = !self.bool(1) && (self.bool(0) || self.outputs[0].is_true());
+                self.put_bool(0, q1);
+            }
+        }
+    }
+
+    fn on_delay(&mut self, now: i64) {
+        let input = self.bool(0);
+        if self.state == State::Idle && input && !self.previous[0] {
+            self.begin(now);
+            self.put_bool(0, false);
+            self.put_elapsed(0);
+        } else if !input {
+            self.state = State::Idle;
+            self.put_bool(0, false);
+            self.put_elapsed(0);
+        } else if self.state == State::Timing && self.time_is_up(now) {
+            self.put_bool(0, true);
+        }
+        self.previous[0] = input;
+    }
+
+    fn off_delay(&mut self, now: i64) {
+        let input = self.bool(0);
+        if self.state == State::Idle && !input && self.previous[0] {
+            self.begin(now);
+        } else if input {
+            self.state = State::Idle;
+            self.put_bool(0, true);
+            self.put_elapsed(0);
+        } else if self.state == State::Timing && self.time_is_up(now) {
+            self.put_bool(0, false);
+        }
+        self.previous[0] = input;
+    }
+
+    fn pulse(&mut self, now: i64) {
+        let input = self.bool(0);
+        if self.state == State::Idle && input && !self.previous[0] {
+            self.begin(now);
+            self.put_bool(0, true);
+        } else if self.state == State::Timing && self.time_is_up(now) {
+            self.put_bool(0, false);
+        }
+        if self.state == State::Expired && !input {
+            self.state = State::Idle;
+            self.put_elapsed(0);
+        }
+        self.previous[0] = input;
+    }
+
+    fn begin(&mut self, now: i64) {
+        self.state = State::Timing;
+        self.start = now;
+    }
+
+    /// The step of every timing timer: expires, or tells how long it has been timing.
+    fn time_is_up(&mut self, now: i64) -> bool {
+        let preset = i64::try_from(self.integer(1)).expect("a TIME has 64 bits");
+        let up = i128::from(self.start) + i128::from(preset) <= i128::from(now);
+        if up {
+            self.state = State::Expired;
+            self.put_elapsed(preset);
+        } else {
+            self.put_elapsed(now - self.start);
+        }
+        up
+    }
+
+    fn count_up(&mut self) {
+        let up = self.rises(0, 0);
+        let (reset, preset, mut count) = (self.bool(1), self.integer(2), self.output(1));
+        if reset {
+            count = 0;
+        } else if up && count < preset {
+            count += 1;
+        }
+        self.put_bool(0, count >= preset);
+        self.put_count(1, count);
+    }
+
+    fn count_down(&mut self) {
+        let down = self.rises(0, 0);
+        let (load, preset, mut count) = (self.bool(1), self.integer(2), self.output(1));
+        if load {
+            count = preset;
+        } else if down && count > 0 {
+            count -= 1;
+        }
+        self.put_bool(0, count <= 0);
+        self.put_count(1, count);
+    }
+
+    fn count_up_and_down(&mut self) {
+        let up = self.rises(0, 0);
+        let down = self.rises(1, 1);
+        let (reset, load, preset, mut count) = (self.bool(2), self.bool(3), self.integer(4), self.output(2));
+        if reset {
+            count = 0;
+        } else if load {
+            count = preset;
+        } else if up && down {
+            // Both edges in one scan: no change.
+        } else if up && count < preset {
+            count += 1;
+        } else if down && count > 0 {
+            count -= 1;
+        }
+        self.put_bool(0, count >= preset);
+        self.put_bool(1, count <= 0);
+        self.put_count(2, count);
+    }
+
+    /// R_TRIG on an input: Q := CLK AND NOT M; M := CLK.
+    fn rises(&mut self, input: usize, memory: usize) -> bool {
+        let clock = self.bool(input);
+        let rises = clock && !self.previous[memory];
+        self.previous[memory] = clock;
+        rises
+    }
+
+    fn bool(&self, input: usize) -> bool {
+        self.inputs[input].is_true()
+    }
+
+    fn integer(&self, input: usize) -> i128 {
+        self.inputs[input].as_integer().expect("no standard block has a REAL input")
+    }
+
+    fn output(&self, output: usize) -> i128 {
+        self.outputs[output].as_integer().expect("no standard block has a REAL output")
+    }
+
+    fn put_bool(&mut self, output: usize, value: bool) {
+        self.outputs[output] = Value::bool(value);
+    }
+
+    /// A timer's ET.
+    fn put_elapsed(&mut self, nanoseconds: i64) {
+        self.outputs[1] = Value::time(nanoseconds);
+    }
+
+    fn put_count(&mut self, output: usize, count: i128) {
+        self.outputs[output] = Value::integer(Elementary::Int, count).expect("a count stays between 0 and PV");
+    }
+}

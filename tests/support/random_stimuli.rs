@@ -1,0 +1,84 @@
+//! Random times and inputs for a program, such that timers run out and edges come.
+
+use rung::check::{Checked, Type};
+use rung::elementary::{Elementary, Value};
+use rung::ladder::VariableClass;
+
+use super::dice::Dice;
+
+const MILLISECOND: i64 = 1_000_000;
+
+/// What happens before the scans of a program, one after the other.
+pub(crate) struct Stimuli {
+    dice: Dice,
+    now: i64,
+    inputs: Vec<Input>,
+}
+
+struct Input {
+    name: String,
+    ty: Elementary,
+    /// How many times in a hundred scans it gets a new value.
+    percent: usize,
+    value: Value,
+}
+
+impl Stimuli {
+    /// The stimuli of a seed for a program.
+    pub(crate) fn new(seed: u64, checked: &Checked) -> Self {
+        let mut dice = Dice::new(seed, 2);
+        let mut inputs = Vec::new();
+        for variable in checked.variables().iter().filter(|variable| variable.class == VariableClass::Input) {
+            if let Type::Elementary(ty) = variable.ty {
+                // Some flicker, some stay long enough for a timer.
+                let percent = *dice.pick(&[50, 20, 8, 3]);
+                inputs.push(Input { name: variable.name.clone(), ty, percent, value: variable.initial });
+            }
+        }
+        // A controller that has been running for ages must still add times right.
+        let now = *dice.pick(&[0, 0, 1, 3_600_000 * MILLISECOND, 1 << 62]);
+        Self { dice, now, inputs }
+    }
+
+    /// The time of the next scan and the inputs that change before it.
+    pub(crate) fn next(&mut self) -> (i64, Vec<(String, Value)>) {
+        let now = self.now;
+        let dice = &mut self.dice;
+        let odd = i64::try_from(dice.below(3_000_001)).expect("it is small");
+        self.now += match dice.below(12) {
+            0 => 0,
+            1 => 1,
+            2 => MILLISECOND - 1,
+            3 => odd,
+            4 => 50 * MILLISECOND,
+            5 => 100 * MILLISECOND,
+            6 if dice.percent(30) => 1000 * MILLISECOND,
+            6 | 7 => 10 * MILLISECOND,
+            8 | 9 => 5 * MILLISECOND,
+            _ => MILLISECOND,
+        };
+        let mut changes = Vec::new();
+        for input in &mut self.inputs {
+            if dice.percent(input.percent) {
+                input.value = value(dice, input.ty, input.value);
+                changes.push((input.name.clone(), input.value));
+            }
+        }
+        (now, changes)
+    }
+}
+
+/// The next value of an input: mostly small, sometimes any.
+fn value(dice: &mut Dice, ty: Elementary, last: Value) -> Value {
+    let small = dice.below(6) as u64;
+    match ty {
+        Elementary::Bool => Value::bool(!last.is_true()),
+        Elementary::Time if dice.percent(95) => Value::time(small.cast_signed() * 10 * MILLISECOND),
+        Elementary::Real | Elementary::Lreal if dice.percent(80) => {
+            let number = f64::from(u32::try_from(small).expect("it is small")) * 0.75 - 1.5;
+            Value::real(ty, number).expect("it is a REAL or LREAL")
+        }
+        _ if ty.is_real() || dice.percent(15) => Value::from_bits(ty, dice.bits()),
+        _ => Value::from_bits(ty, small.wrapping_sub(u64::from(dice.percent(20)) * 3)),
+    }
+}
