@@ -17,7 +17,7 @@ use rung_runtime::Scan;
 
 pub use textbook::Textbook;
 
-use crate::logic::Program;
+use crate::logic::{Program, verify};
 use gate::Gate;
 use step::Step;
 
@@ -34,6 +34,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// Translates a verified program.
     pub fn new(program: &Program) -> Self {
+        debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
         translate::translate(program)
     }
 
