@@ -1,6 +1,5 @@
 //! What a rung costs the two interpreters, and translating it for the fast one: `cargo bench --bench interp`.
 //! A tenth of the inputs changes before every scan.
-#![expect(missing_docs, reason = "criterion's macros make public functions")]
 
 #[path = "support/workload.rs"]
 mod workload;
