@@ -11,6 +11,7 @@ mod fmt;
 mod generate;
 mod load;
 mod output;
+mod run;
 mod show;
 mod sim;
 
@@ -37,6 +38,7 @@ enum Command {
     Fmt(fmt::Arguments),
     Gen(generate::Arguments),
     Show(show::Arguments),
+    Run(run::Arguments),
     Sim(sim::Arguments),
 }
 
@@ -51,6 +53,7 @@ pub fn main() -> ExitCode {
         Command::Fmt(arguments) => fmt::run(arguments),
         Command::Gen(arguments) => generate::run(arguments),
         Command::Show(arguments) => show::run(arguments),
+        Command::Run(arguments) => run::run(arguments),
         Command::Sim(arguments) => sim::run(arguments),
     };
     output::exit(result)
