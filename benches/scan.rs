@@ -1,1 +1,56 @@
-fn main() {}
+//! How long a scan takes, compiled and interpreted, with a tenth of the inputs changing between scans.
+#![expect(missing_docs, reason = "criterion's macros make public functions")]
+
+#[path = "support/workload.rs"]
+mod workload;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use rung::engine::interp::Interpreter;
+use rung::engine::jit::Jit;
+use rung::opt;
+use rung_runtime::Scan;
+use workload::{Workload, workload};
+
+fn scans(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("scan");
+    for rungs in [18, 1451, 20_000] {
+        let Workload { program, inputs } = workload(rungs);
+        let program = opt::optimise(program);
+        let jit = Jit::compile(&program).expect("code for this machine");
+        group.throughput(Throughput::Elements(rungs as u64));
+        let engines: [(&str, Box<dyn Scan>); 2] =
+            [("jit", Box::new(jit)), ("interpreter", Box::new(Interpreter::new(&program)))];
+        for (name, mut engine) in engines {
+            let mut image = program.layout.initial_image();
+            let mut rng = Pcg64::seed_from_u64(1);
+            let mut now = 0;
+            group.bench_function(format!("{name}/{rungs}"), |bencher| {
+                bencher.iter_custom(|iterations| {
+                    let mut spent = Duration::ZERO;
+                    // Eight scans for each change of inputs, so that reading the clock does not count.
+                    for _ in 0..iterations.div_ceil(8) {
+                        for _ in 0..inputs.len().div_ceil(10) {
+                            image[rng.random_range(inputs.clone())] ^= 1;
+                        }
+                        let begin = Instant::now();
+                        for _ in 0..8 {
+                            now += 1_000_000;
+                            engine.scan(black_box(&mut image), now);
+                        }
+                        spent += begin.elapsed();
+                    }
+                    spent.mul_f64(iterations as f64 / (8 * iterations.div_ceil(8)) as f64)
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, scans);
+criterion_main!(benches);

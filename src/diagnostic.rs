@@ -105,6 +105,10 @@ codes! {
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
     EnginesDiffer = 902 Error "two engines compute different values",
+    // Running.
+    BadTiming = 1001 Error "times that do not go together",
+    CannotStart = 1002 Error "the program cannot be started",
+    Stopped = 1003 Error "the program was stopped",
 }
 
 impl fmt::Display for Code {

@@ -12,6 +12,7 @@ pub mod draw;
 pub mod elementary;
 pub mod engine;
 pub mod frontend;
+pub mod generate;
 pub mod ladder;
 pub mod logic;
 pub mod lower;

@@ -35,3 +35,13 @@ pub trait Scan {
         true
     }
 }
+
+impl<S: Scan + ?Sized> Scan for &mut S {
+    fn scan(&mut self, image: &mut [u8], now: i64) {
+        (**self).scan(image, now);
+    }
+
+    fn trusted(&self) -> bool {
+        (**self).trusted()
+    }
+}

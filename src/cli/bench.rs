@@ -105,7 +105,7 @@ fn make(engine: Engine, program: &Program) -> Result<(Box<dyn Scan>, usize), Fai
         }
         Engine::Textbook => {
             let textbook = Textbook::new(program);
-            (Box::new(textbook), std::mem::size_of_val(program.instructions.as_slice()))
+            (Box::new(textbook), size_of_val(program.instructions.as_slice()))
         }
     })
 }

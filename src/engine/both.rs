@@ -51,6 +51,11 @@ impl<A: Scan, B: Scan> Both<A, B> {
         Self { first, second, image, inputs, differing: None, started: false }
     }
 
+    /// The second engine.
+    pub fn second(&self) -> &B {
+        &self.second
+    }
+
     /// What they disagree on, since the first scan after which they did. No scan runs after that one.
     pub fn difference(&self, program: &Program) -> Option<Difference> {
         self.differing.as_ref().and_then(|first| Difference::between(program, first, &self.image))

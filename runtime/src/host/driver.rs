@@ -15,6 +15,16 @@ pub trait Pace: TickSource {
     fn moment(&self, tick: u32) -> u64;
 }
 
+impl<P: Pace + ?Sized> Pace for &P {
+    fn wait(&self, tick: u32) {
+        (**self).wait(tick);
+    }
+
+    fn moment(&self, tick: u32) -> u64 {
+        (**self).moment(tick)
+    }
+}
+
 /// What a run is driven by.
 #[derive(Debug)]
 pub struct Driver<'a> {
