@@ -31,7 +31,9 @@ fn compiles(criterion: &mut Criterion) {
         let instructions: usize = jit
             .chunks()
             .iter()
-            .map(|chunk| disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).map_or(0, |lines| lines.len()))
+            .map(|chunk| {
+                disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).map_or(0, |lines| lines.len())
+            })
             .sum();
         let each = |count: usize| count as f64 / rungs as f64;
         let bytes = jit.code_bytes();
