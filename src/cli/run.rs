@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use rung_runtime::host::End;
+use rung_runtime::host::{End, Histogram, Statistics};
 use rung_runtime::{Fault, Stopped};
 
 use super::load::Loaded;
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shared = Arc::clone(&machine.shared);
     let outcome = machine.finish();
     watched?;
-    print(&format!("ended after {}\n", plain::figures(&shared.statistics)))?;
+    print(&summary(&shared.statistics, timing.watchdog))?;
     match outcome {
         Err(Lost::Hung) => {
             let limit = time::rounded(timing.watchdog);
@@ -170,7 +170,7 @@ fn description(
     let boxes = if counts.boxes == 0 { String::new() } else { format!(", {} boxes", counts.boxes) };
     format!(
         "{}: {rungs} rungs, {} contacts, {} coils, {} blocks{boxes}\n  image {} bytes, {} instructions of logic{code}, \
-         made ready in {}\n  engine {}, cycle {}, tick {}\n",
+         compiled in {}\n  engine {}, cycle {}, tick {}\n",
         checked.name(),
         counts.contacts,
         counts.coils,
@@ -181,6 +181,22 @@ fn description(
         arguments.engine.name(),
         time::exact(arguments.cycle),
         time::exact(arguments.tick),
+    )
+}
+
+/// The figures of a whole run.
+fn summary(statistics: &Statistics, watchdog: u64) -> String {
+    let line =
+        |name: &str, histogram: &Histogram| format!("  {name:<9} {} (p50 / p99 / max)\n", plain::quantiles(histogram));
+    format!(
+        "ended after {} cycles, {} overruns, {} skipped\n{}{}  {:<9} {}\n",
+        statistics.cycles(),
+        statistics.overruns(),
+        statistics.skipped(),
+        line("scan", &statistics.scan),
+        line("lateness", &statistics.lateness),
+        "watchdog",
+        time::rounded(watchdog),
     )
 }
 

@@ -333,3 +333,6 @@ impl Teller {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -79,20 +79,21 @@ fn moment(nanoseconds: i64) -> String {
 }
 
 /// The statistics on one line.
-pub(super) fn figures(statistics: &Statistics) -> String {
-    let quantiles = |histogram: &Histogram| {
-        let all = histogram.quantiles();
-        let [p50, p99, max] = [all.p50, all.p99, all.max].map(time::rounded);
-        format!("{p50} / {p99} / {max}")
-    };
+fn figures(statistics: &Statistics) -> String {
     format!(
-        "{} cycles, scan {}, lateness {} (p50 / p99 / max), {} overruns, {} skipped",
+        "{} cycles, scan {}, lateness {}, {} overruns, {} skipped",
         statistics.cycles(),
         quantiles(&statistics.scan),
         quantiles(&statistics.lateness),
         statistics.overruns(),
         statistics.skipped()
     )
+}
+
+/// Median, 99 % and maximum of a histogram.
+pub(super) fn quantiles(histogram: &Histogram) -> String {
+    let all = histogram.quantiles();
+    [all.p50, all.p99, all.max].map(time::rounded).join(" / ")
 }
 
 #[cfg(test)]

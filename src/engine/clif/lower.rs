@@ -116,7 +116,22 @@ impl Lowering<'_, '_> {
             }
             Op::Convert(a) => self.convert(a, ty),
         };
+        let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
+        let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
         self.held[index - self.first] = Some(value);
+    }
+
+    /// The same value, but such that loads below it can still become part of the instructions that use them, though it
+    /// is used more than once: Cranelift gives up on all that such a value is made of, up to the parameters of a block.
+    /// The jump to the block that follows makes no code.
+    fn settled(&mut self, value: Value) -> Value {
+        let block = self.builder.create_block();
+        let ty = self.builder.func.dfg.value_type(value);
+        let settled = self.builder.append_block_param(block, ty);
+        self.builder.ins().jump(block, &[value.into()]);
+        self.builder.switch_to_block(block);
+        self.builder.seal_block(block);
+        settled
     }
 
     pub(super) fn type_of(&self, id: ValueId) -> Elementary {

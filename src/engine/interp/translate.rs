@@ -37,9 +37,10 @@ struct Translator<'a> {
     values: Vec<Function>,
     /// How often each value is still used, from the present instruction on.
     uses: Vec<u32>,
-    /// The first store of each value, and of each store the access to its slot before, as places of instructions.
+    /// The place of the first store of each value.
     first_store: Vec<Option<usize>>,
-    access_before: HashMap<usize, usize>,
+    /// Of each store, one past the place where its slot was loaded or stored before, or 0.
+    access_before: Vec<usize>,
     /// Which values may be made of the cell of a slot.
     watchers: HashMap<u32, Vec<ValueId>>,
     constants: HashMap<(u32, u64), u32>,
@@ -57,8 +58,8 @@ impl<'a> Translator<'a> {
     fn new(program: &'a Program) -> Self {
         let count = program.instructions.len();
         let mut uses = vec![0; count];
-        let (mut first_store, mut access_before) = (vec![None; count], HashMap::new());
-        let mut last_access = HashMap::new();
+        let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
+        let mut last_access = vec![0; program.layout.slots().len()];
         // The time comes right behind the image.
         let mut cells = vec![0; (program.layout.size() + CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
@@ -67,14 +68,10 @@ impl<'a> Translator<'a> {
                 uses[operand.index()] += 1;
             }
             match instruction.op {
-                Op::Load(slot) => {
-                    last_access.insert(slot, index);
-                }
+                Op::Load(slot) => last_access[slot.index()] = index + 1,
                 Op::Store(slot, value) => {
                     first_store[value.index()].get_or_insert(index);
-                    if let Some(before) = last_access.insert(slot, index) {
-                        access_before.insert(index, before);
-                    }
+                    access_before[index] = std::mem::replace(&mut last_access[slot.index()], index + 1);
                 }
                 Op::Constant(bits) if instruction.ty != Elementary::Bool => {
                     constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {
@@ -237,7 +234,7 @@ impl<'a> Translator<'a> {
     fn target(&mut self, value: ValueId, ty: Elementary) -> u32 {
         if let Some(store) = self.first_store[value.index()].filter(|store| *store > self.at)
             && let Op::Store(slot, _) = self.program.instructions[store].op
-            && self.access_before.get(&store).is_none_or(|before| *before < self.at)
+            && self.access_before[store] <= self.at
         {
             let cell = self.program.layout.slot(slot).offset;
             self.release(cell, value);

@@ -248,8 +248,8 @@ outputs
 
 blocks
      delay            TON    ● Q         ███░░░░░░░░░  1.5 s of 6.0 s
-a key in brackets toggles or selects, + and - change a selected n";
-        assert_eq!(drawn(65, 30).join("\n"), expected);
+a key in brackets toggles or selects, + and - change a selected number";
+        assert_eq!(drawn(70, 30).join("\n"), expected);
     }
 
     #[test]
@@ -261,6 +261,6 @@ a key in brackets toggles or selects, + and - change a selected n";
                 assert!(lines.iter().all(|line| line.width() <= width), "{width} x {height}");
             }
         }
-        assert!(drawn(80, 10).join("\n").contains("… 6 more lines"));
+        assert!(drawn(60, 10).join("\n").contains("… 6 more lines"));
     }
 }
