@@ -1,6 +1,7 @@
 //! Every engine and the independent evaluator compute the same: on step tables, on each element, on random programs.
 
 mod elements;
+mod examples;
 mod random;
 mod steps;
 
