@@ -3,18 +3,24 @@
 //! With the runtime's host part this is the only place that does I/O. Nothing here may know how a program is
 //! parsed, lowered or run; and no output file may ever be left half-written.
 
+mod bench;
+mod build;
 mod check;
+mod duration;
 mod fmt;
+mod generate;
 mod load;
 mod output;
+mod run;
 mod show;
+mod sim;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use load::{Loaded, load, load_checked, read_bytes};
-pub(crate) use output::{Failure, print, report, write_whole};
+pub(crate) use load::{load, load_checked, read_bytes};
+pub(crate) use output::{Failure, WholeFile, cannot_write, print, report, write_whole};
 
 /// A compiler and runtime for PLC ladder diagrams.
 #[derive(Debug, Parser)]
@@ -26,9 +32,14 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bench(bench::Arguments),
+    Build(build::Arguments),
     Check(check::Arguments),
     Fmt(fmt::Arguments),
+    Gen(generate::Arguments),
     Show(show::Arguments),
+    Run(run::Arguments),
+    Sim(sim::Arguments),
 }
 
 /// Runs the command that the process was started with, and gives its exit code: 0, or 1 when there was an error
@@ -36,9 +47,14 @@ enum Command {
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match &arguments.command {
+        Command::Bench(arguments) => bench::run(arguments),
+        Command::Build(arguments) => build::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Fmt(arguments) => fmt::run(arguments),
+        Command::Gen(arguments) => generate::run(arguments),
         Command::Show(arguments) => show::run(arguments),
+        Command::Run(arguments) => run::run(arguments),
+        Command::Sim(arguments) => sim::run(arguments),
     };
     output::exit(result)
 }

@@ -57,6 +57,7 @@ codes! {
     CannotRead = 103 Error "the file cannot be read",
     CannotWrite = 104 Error "the file cannot be written",
     UnknownFormat = 105 Error "the format of the file is not known",
+    BadOptions = 106 Error "options that do not go together",
     // Syntax.
     UnexpectedToken = 201 Error "something else was expected here",
     UnexpectedCharacter = 202 Error "this character has no meaning here",
@@ -103,6 +104,11 @@ codes! {
     BadLogic = 801 Error "logic that cannot be used",
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
+    EnginesDiffer = 902 Error "two engines compute different values",
+    // Running.
+    BadTiming = 1001 Error "times that do not go together",
+    CannotStart = 1002 Error "the program cannot be started",
+    Stopped = 1003 Error "the program was stopped",
 }
 
 impl fmt::Display for Code {

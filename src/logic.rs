@@ -10,13 +10,20 @@
 mod build;
 pub mod evaluate;
 pub mod image;
+pub mod map;
 mod op;
+mod parse;
+mod print;
 #[doc(hidden)]
 pub mod random;
+mod verify;
 
 pub use build::Builder;
 pub use image::{Area, Layout, LayoutBuilder, Slot, SlotId};
 pub use op::{Binary, Compare, Domain, Instruction, Op, Unary, ValueId};
+pub use parse::parse;
+pub use print::print;
+pub use verify::{Problem, verify};
 
 /// Sections to a chunk, unless the builder cuts earlier. Chunks of 64 to 1024 rungs run alike; smaller ones
 /// compile in parallel and are replaced one by one.

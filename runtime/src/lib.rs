@@ -1,5 +1,25 @@
 //! What every Rung program runs on: the process image, the tick counter and the scan loop.
+//!
+//! The core needs no standard library, no memory but what it is given and no other crate. Ticks come from an
+//! interrupt, the field is behind [`FieldIo`], and [`Controller`] runs one cycle after another between them.
+//! With the feature `host` there is also [`host`]: a thread for the interrupt, real-time scheduling, a periodic
+//! driver with statistics and a simulated panel. Only that part reads clocks, starts threads or calls the system.
 #![cfg_attr(not(feature = "host"), no_std)]
+#![cfg_attr(not(feature = "host"), forbid(unsafe_code))]
+
+mod controller;
+#[cfg(feature = "host")]
+pub mod host;
+mod image;
+mod io;
+mod schedule;
+mod tick;
+
+pub use controller::{Clock, Controller, Cycle, Fault, Stopped};
+pub use image::{BadRegions, Extent, Inputs, Outputs, Regions};
+pub use io::FieldIo;
+pub use schedule::Schedule;
+pub use tick::{Latch, TickCounter, TickSource};
 
 /// One scan of a program over its process image.
 pub trait Scan {
@@ -8,4 +28,20 @@ pub trait Scan {
     /// # Panics
     /// When `image` is not of the program's size.
     fn scan(&mut self, image: &mut [u8], now: i64);
+
+    /// Whether the image that the last scan left may go out. A scan that checks itself, as two engines side by
+    /// side do, says FALSE once it has found a difference; outputs are put off then.
+    fn trusted(&self) -> bool {
+        true
+    }
+}
+
+impl<S: Scan + ?Sized> Scan for &mut S {
+    fn scan(&mut self, image: &mut [u8], now: i64) {
+        (**self).scan(image, now);
+    }
+
+    fn trusted(&self) -> bool {
+        (**self).trusted()
+    }
 }

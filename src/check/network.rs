@@ -6,12 +6,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Checker;
 use super::expression::constant;
-use super::model::{self, NodeId};
+use super::model::{self, NodeId, Place};
+use super::report::clipped;
+use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ContactKind, ElementKind, Name, Rung};
+use crate::ladder::{self, ContactKind, ElementKind, Name, Reference, Rung};
 use crate::source::Span;
 
 /// What is known of the power at a point.
@@ -45,7 +46,7 @@ pub(super) struct Walk {
     /// Nodes that were fed.
     fed: u32,
     /// Whether anything in it has an effect.
-    pub(super) active: bool,
+    active: bool,
     /// Whether a coil or an assignment may have power.
     conducts: bool,
     /// What keeps the power from the first coil or assignment that has none.
@@ -106,27 +107,28 @@ impl Checker<'_> {
     fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
         let mut walk = Walk::new(index, rung.enabled);
         let (circuit, _) = self.circuit(&rung.circuit, Power::Maybe, &mut walk);
-        for node in walk.nodes.values().filter(|node| node.used.is_none()) {
+        let mut unused: Vec<&Node> = walk.nodes.values().filter(|node| node.used.is_none()).collect();
+        unused.sort_by_key(|node| node.id.0);
+        for node in unused {
             let problem = Diagnostic::new(Code::NodeMisuse, node.span, "no branch starts at this node");
             self.report.push(problem.hint("its name at the start of a later branch continues from it"));
         }
-        let name = self.rung_name(index);
         if !walk.active {
-            let message = format!("{name} has no coil, block or assignment");
+            let message = format!("{} has no coil, block or assignment", self.rung_name(index));
             self.report.push(Diagnostic::new(Code::EmptyRung, rung.span, message));
         } else if let (false, Some(barrier)) = (walk.conducts, walk.barrier) {
-            let message = format!("{name} can never conduct: no power passes here");
+            let message = format!("{} can never conduct: no power passes here", self.rung_name(index));
             let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
             self.report.push(problem.hint("`rung off` keeps a rung from running"));
         }
-        let label = rung.name.as_ref().map_or(name, |name| name.text.clone());
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(index), |name| name.text.clone());
         model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
     }
 
     /// A rung by its name or else its number, for messages.
     pub(super) fn rung_name(&self, index: usize) -> String {
         match self.program.rungs.get(index).and_then(|rung| rung.name.as_ref()) {
-            Some(name) => format!("rung {}", name.text),
+            Some(name) => format!("rung {}", clipped(&name.text)),
             None => format!("rung {}", index + 1),
         }
     }
@@ -138,8 +140,7 @@ impl Checker<'_> {
         left: Power,
         walk: &mut Walk,
     ) -> (model::Circuit, Power) {
-        let mut right = Power::Never(circuit.span);
-        let mut met_right = false;
+        let mut right: Option<Power> = None;
         let mut branches = Vec::with_capacity(circuit.branches.len());
         for branch in &circuit.branches {
             let (from, mut power) = match &branch.from {
@@ -154,12 +155,12 @@ impl Checker<'_> {
             }
             let to = branch.to.as_ref().map(|name| self.feed_node(name, power, walk));
             if to.is_none() {
-                right = if met_right { right.or(power) } else { power };
-                met_right = true;
+                right = Some(right.map_or(power, |others| others.or(power)));
             }
             branches.push(model::Branch { from, elements, to });
         }
-        (model::Circuit { branches }, right)
+        // Where every branch ends at a node there is no power on the right.
+        (model::Circuit { branches }, right.unwrap_or(Power::Never(circuit.span)))
     }
 
     /// The node that a branch starts at, and its power.
@@ -219,9 +220,7 @@ impl Checker<'_> {
             }
             ElementKind::Coil { kind, target } => {
                 walk.effect(left);
-                let written = self.write(target);
-                let target =
-                    written.and_then(|(place, ty)| self.is_bool(ty, "a coil writes", target.span).then_some(place));
+                let target = self.coil_target(target);
                 if let Some(target) = target {
                     self.note_coil(*kind, target, element.span, walk);
                 }
@@ -249,5 +248,16 @@ impl Checker<'_> {
                 (Some(model::Element::Parallel(circuit)), right)
             }
         }
+    }
+
+    /// Where a coil writes.
+    fn coil_target(&mut self, target: &Reference) -> Option<Place> {
+        let (place, ty) = self.write(target)?;
+        if ty != Elementary::Bool {
+            let message = format!("a coil writes a BOOL, and this is {}", types::with_article(ty.name()));
+            let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
+            self.report.push(problem.hint("write other types in braces, as in `{x := 1}`"));
+        }
+        (ty == Elementary::Bool).then_some(place)
     }
 }

@@ -1,6 +1,7 @@
 //! The names of a program and what they stand for. Names are looked up without regard to case; nothing outside of
 //! this module may compare spellings.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use super::address::Extent;
@@ -29,6 +30,12 @@ pub(super) enum State {
     Broken,
 }
 
+/// [`key`], without a copy where the name is its own key, as most are.
+fn folded(name: &str) -> Cow<'_, str> {
+    let is_key = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
+    if name.bytes().all(is_key) { Cow::Borrowed(name) } else { Cow::Owned(key(name)) }
+}
+
 /// Every name, address and variable.
 #[derive(Default)]
 pub(super) struct Scope {
@@ -44,7 +51,7 @@ pub(super) struct Scope {
 impl Scope {
     /// The variable of that name.
     pub(super) fn find(&self, name: &Name) -> Option<VariableId> {
-        self.names.get(&name.key()).copied()
+        self.names.get(folded(&name.text).as_ref()).copied()
     }
 
     /// Adds a variable under its name. Where there is one of that name already, `Err` is that one.

@@ -3,12 +3,12 @@
 /// The longest name that is compared, in bytes.
 const LONGEST: usize = 64;
 
-/// Names that may still be looked at in one run; after that there are no more suggestions.
+/// Pairs of letters that may still be compared in one run; after that there are no more suggestions.
 pub(super) struct Budget(usize);
 
 impl Default for Budget {
     fn default() -> Self {
-        Self(1_000_000)
+        Self(10_000_000)
     }
 }
 
@@ -27,6 +27,7 @@ pub(super) fn nearest<'a>(
     for candidate in candidates {
         budget.0 = budget.0.checked_sub(1)?;
         if candidate.len() <= LONGEST && candidate.len().abs_diff(name.len()) <= limit {
+            budget.0 = budget.0.checked_sub(name.len() * candidate.len())?;
             let distance = distance(name.as_bytes(), candidate.as_bytes());
             if distance <= limit && best.is_none_or(|(least, _)| distance < least) {
                 best = Some((distance, candidate));
@@ -77,7 +78,7 @@ mod tests {
     fn the_nearest_name_is_suggested_and_none_that_is_far() {
         let names = ["start", "stop", "pump", "pumps"];
         let nearest = |name| nearest(name, names.into_iter(), &mut Budget::default());
-        assert_eq!(nearest("PUMSP"), Some("pumps"));
+        assert_eq!(nearest("PUPMS"), Some("pumps"));
         assert_eq!(nearest("strat"), Some("start"));
         assert_eq!(nearest("valve"), None);
         assert_eq!(nearest("x"), None);
@@ -85,6 +86,6 @@ mod tests {
 
     #[test]
     fn a_spent_budget_suggests_nothing() {
-        assert_eq!(nearest("strat", ["start"].into_iter(), &mut Budget(0)), None);
+        assert_eq!(nearest("strat", ["start"].into_iter(), &mut Budget(25)), None);
     }
 }

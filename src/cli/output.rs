@@ -1,8 +1,11 @@
 //! What the command prints and writes, and how it fails.
 
-use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+use tempfile::NamedTempFile;
 
 use crate::diagnostic::{self, Code, Diagnostic};
 use crate::source::Source;
@@ -44,26 +47,81 @@ pub(crate) fn report(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes a file whole or not at all: into a temporary file beside it, which then takes its name. `-` is the
-/// standard output.
+/// Writes a file whole or not at all, see [`WholeFile`].
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        let mut stdout = io::stdout().lock();
-        return stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| cannot_write(path, &error));
+    let mut file = WholeFile::create(path)?;
+    file.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
+    file.finish()
+}
+
+/// A file that is written bit by bit, and whole or not at all: what is written goes to a temporary file beside it,
+/// which takes its name at the end. `-` is the standard output, which like a device has no whole to replace.
+#[derive(Debug)]
+pub(crate) struct WholeFile {
+    path: PathBuf,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Stdout(BufWriter<io::Stdout>),
+    Device(BufWriter<File>),
+    Temporary(BufWriter<NamedTempFile>),
+}
+
+impl WholeFile {
+    /// Starts a file; nothing is seen of it before [`WholeFile::finish`].
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let create = || -> io::Result<Sink> {
+            if path == Path::new("-") {
+                return Ok(Sink::Stdout(BufWriter::new(io::stdout())));
+            }
+            if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+                return Ok(Sink::Device(BufWriter::new(File::options().write(true).open(path)?)));
+            }
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let file = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder)?;
+            Ok(Sink::Temporary(BufWriter::new(file)))
+        };
+        let sink = create().map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), sink })
     }
-    // A device or a pipe has no whole to replace.
-    if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
-        return std::fs::write(path, bytes).map_err(|error| cannot_write(path, &error));
+
+    /// Gives the file its name, with all that was written.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let Self { path, sink } = self;
+        let finish = || -> io::Result<()> {
+            match sink {
+                Sink::Stdout(mut out) => out.flush(),
+                Sink::Device(mut out) => out.flush(),
+                Sink::Temporary(out) => {
+                    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+                    file.as_file().sync_all()?;
+                    file.persist(&path).map_err(|error| error.error)?;
+                    Ok(())
+                }
+            }
+        };
+        finish().map_err(|error| cannot_write(&path, &error))
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || -> io::Result<()> {
-        let mut file = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().map_err(|error| cannot_write(path, &error))
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.sink {
+            Sink::Stdout(out) => out.write(bytes),
+            Sink::Device(out) => out.write(bytes),
+            Sink::Temporary(out) => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Stdout(out) => out.flush(),
+            Sink::Device(out) => out.flush(),
+            Sink::Temporary(out) => out.flush(),
+        }
+    }
 }
 
 /// The permissions of the file that is replaced, or those of any new file: a temporary file's own would hide it
@@ -76,7 +134,8 @@ fn permissions(path: &Path) -> std::fs::Permissions {
     path.metadata().map_or(usual, |metadata| metadata.permissions())
 }
 
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+/// A failure to write a file; that the standard output is closed is none.
+pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     if path == Path::new("-") && error.kind() == ErrorKind::BrokenPipe {
         return Failure::Closed;
     }

@@ -76,7 +76,7 @@ pub enum Root {
 pub enum Step {
     /// `.name`
     Member(Name),
-    /// `.3`: a bit of a bit string or integer, from 0.
+    /// `.3`: a bit of a bit string, from 0.
     Bit(u8, Span),
 }
 

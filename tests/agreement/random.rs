@@ -40,14 +40,30 @@ const SCANS: u64 = 200;
 
 #[test]
 fn random_programs_compute_the_same_on_every_engine_and_in_the_evaluator() {
+    for seed in seeds() {
+        let program = random_program(seed);
+        if run(&program, seed).is_err() {
+            panic!("{}", report(&program, seed));
+        }
+    }
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "the table is for whoever runs the test with --nocapture")]
+fn in_random_programs_every_element_and_block_occurs_and_changes() {
     let mut coverage = Coverage::default();
     for seed in seeds() {
         let program = random_program(seed);
-        match run(&program, seed) {
-            Ok(done) => coverage.add_activities(&done),
-            Err(_) => panic!("{}", report(&program, seed)),
-        }
         coverage.add_program(&program);
+        let checked = checked(&program).unwrap_or_else(|problems| panic!("seed {seed}\n{problems}"));
+        let mut oracle = Oracle::new(&checked);
+        let mut stimuli = Stimuli::new(seed, &checked);
+        for _ in 0..number("RUNG_SCANS", SCANS) {
+            let (now, changes) = stimuli.next();
+            changes.iter().for_each(|(name, value)| oracle.set(name, *value));
+            oracle.scan(now);
+        }
+        coverage.add_activities(oracle.activities());
     }
     println!("{coverage}");
     if number("RUNG_SEEDS", SEEDS) >= SEEDS && number("RUNG_SCANS", SCANS) >= SCANS {
@@ -111,7 +127,8 @@ struct Failure {
     particulars: String,
 }
 
-fn run(program: &Program, seed: u64) -> Result<Vec<crate::support::oracle::Activity>, Failure> {
+/// Runs a program everywhere and compares after every scan.
+fn run(program: &Program, seed: u64) -> Result<(), Failure> {
     let failure = |heading, particulars| Failure { heading, particulars };
     let checked = checked(program).map_err(|problems| failure("it does not check", problems))?;
     let mut rig = Rig::new(&checked).map_err(|problem| failure("it does not compile", problem))?;
@@ -128,7 +145,7 @@ fn run(program: &Program, seed: u64) -> Result<Vec<crate::support::oracle::Activ
             failure("the engines differ", particulars)
         })?;
     }
-    Ok(rig.oracle.activities().to_vec())
+    Ok(())
 }
 
 /// What is wrong with a program, after leaving out every rung without which it is wrong in the same way.

@@ -47,9 +47,22 @@ struct Entry {
     class: VariableClass,
 }
 
+/// What something is named for.
+#[derive(Clone, Copy, PartialEq)]
+enum Purpose {
+    Read,
+    /// To read something that is no constant.
+    ReadVariable,
+    Write,
+}
+
 impl Entry {
-    fn is_writable(&self) -> bool {
-        matches!(self.class, VariableClass::Output | VariableClass::Memory)
+    fn is_for(&self, purpose: Purpose) -> bool {
+        match purpose {
+            Purpose::Read => true,
+            Purpose::ReadVariable => self.class != VariableClass::Constant,
+            Purpose::Write => matches!(self.class, VariableClass::Output | VariableClass::Memory),
+        }
     }
 }
 
@@ -92,9 +105,9 @@ impl Generator {
         self.program.rungs.push(rung);
     }
 
-    /// A reference to something of a type, and whether there is any. Names come in another case now and then.
-    fn place(&mut self, ty: Elementary, writable: bool) -> Option<Reference> {
-        let fits = |entry: &&Entry| entry.ty == ty && (!writable || entry.is_writable());
+    /// A reference to something of a type, if there is any. Names come in another case now and then.
+    fn place(&mut self, ty: Elementary, purpose: Purpose) -> Option<Reference> {
+        let fits = |entry: &&Entry| entry.ty == ty && entry.is_for(purpose);
         let fitting: Vec<Entry> = self.scope.iter().filter(fits).cloned().collect();
         if fitting.is_empty() {
             return None;

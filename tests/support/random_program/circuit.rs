@@ -7,16 +7,16 @@ use rung::ladder::{
 };
 
 use super::expression::boolean;
-use super::{Generator, Instance};
+use super::{Generator, Instance, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 /// How deep parallels and circuits at pins nest.
 const DEPTH: usize = 3;
 
 impl Generator {
-    /// One to four elements.
+    /// One to three elements.
     pub(super) fn series(&mut self, depth: usize) -> Vec<Element> {
-        (0..self.dice.between(1, if depth == 0 { 4 } else { 2 })).map(|_| self.element(depth)).collect()
+        (0..self.dice.between(1, if depth == 0 { 3 } else { 2 })).map(|_| self.element(depth)).collect()
     }
 
     fn element(&mut self, depth: usize) -> Element {
@@ -37,7 +37,7 @@ impl Generator {
         let kind = *self.dice.pick(&[Open, Open, Open, Closed, Closed, Rising, Falling]);
         let constant = self.dice.percent(3).then(|| boolean(self.dice.percent(70)));
         let operand = constant.unwrap_or_else(|| {
-            let reference = self.readable(Elementary::Bool).expect("every program has a BOOL");
+            let reference = self.readable(Elementary::Bool, Purpose::Read).expect("every program has a BOOL");
             drawing::expression(ExpressionKind::Read(reference))
         });
         drawing::element(ElementKind::Contact { kind, operand })
@@ -76,11 +76,11 @@ impl Generator {
     fn target(&mut self, ty: Elementary) -> Option<Reference> {
         if ty == Elementary::Bool
             && self.dice.percent(8)
-            && let Some(bit) = self.bit(true)
+            && let Some(bit) = self.bit(Purpose::Write)
         {
             return Some(bit);
         }
-        self.place(ty, true)
+        self.place(ty, Purpose::Write)
     }
 
     fn parallel(&mut self, depth: usize) -> Element {
@@ -93,9 +93,10 @@ impl Generator {
     }
 
     fn plain_branch(&mut self, depth: usize) -> Branch {
-        let elements = if self.dice.percent(3) { Vec::new() } else { self.series(depth) };
+        // Before the elements, whose own nodes are fed too late for this branch.
         let from = (!self.in_pin && !self.fed_nodes.is_empty() && self.dice.percent(10))
             .then(|| drawing::name(&self.dice.pick(&self.fed_nodes).clone()));
+        let elements = if self.dice.percent(3) { Vec::new() } else { self.series(depth) };
         Branch { from, ..drawing::branch(elements) }
     }
 
@@ -114,7 +115,8 @@ impl Generator {
             }
         }
         for node in &own {
-            if self.dice.percent(70) || node == &own[own.len() - 1] {
+            let is_used = branches.iter().any(|branch| branch.from.as_ref().is_some_and(|from| from.text == *node));
+            if !is_used || self.dice.percent(70) {
                 let from = Some(drawing::name(node));
                 branches.push(Branch { from, ..drawing::branch(self.series(depth)) });
             }

@@ -34,7 +34,7 @@ impl Generator {
         if self.dice.percent(35) {
             self.declare_addresses();
         }
-        for number in 0..self.dice.between(0, 6) {
+        for number in 0..self.dice.between(1, 8) {
             let block = *self.dice.pick(StandardBlock::ALL);
             let declared = self.dice.percent(30);
             let name = format!("{}_{number}", block.name().to_lowercase());
@@ -64,7 +64,7 @@ impl Generator {
         self.scope.push(Entry { root: Root::Name(drawing::name(name)), ty, class });
     }
 
-    /// Addresses far from each other, with and without declarations, two of them with two views.
+    /// Addresses far from each other, with and without declarations, two of them under two names.
     fn declare_addresses(&mut self) {
         use VariableClass::{Input, Memory, Output};
         let mut at = |class: VariableClass, width: Width, numbers: &[u32], names: &[(&str, Elementary)]| {
@@ -79,7 +79,7 @@ impl Generator {
                 self.program.variables.push(variable);
                 self.scope.push(Entry { root: Root::Name(drawing::name(name)), ty: *ty, class });
             }
-            let ty = match width {
+            let undeclared = match width {
                 Width::Bit => Elementary::Bool,
                 Width::Byte => Elementary::Byte,
                 Width::Word => Elementary::Word,
@@ -87,6 +87,7 @@ impl Generator {
                 Width::Long => Elementary::Lword,
             };
             if names.is_empty() || self.dice.percent(30) {
+                let ty = names.first().map_or(undeclared, |(_, ty)| *ty);
                 self.scope.push(Entry { root: Root::Address(address), ty, class });
             }
         };
@@ -96,8 +97,8 @@ impl Generator {
         at(Output, Width::Bit, &[1, 3], &[]);
         at(Output, Width::Byte, &[50], &[]);
         at(Memory, Width::Bit, &[1, 1], &[]);
-        at(Memory, Width::Word, &[300], &[("word_view", Elementary::Word), ("int_view", Elementary::Int)]);
-        at(Memory, Width::Double, &[500], &[("real_view", Elementary::Real), ("dword_view", Elementary::Dword)]);
+        at(Memory, Width::Word, &[300], &[("word_view", Elementary::Word), ("same_word", Elementary::Word)]);
+        at(Memory, Width::Double, &[500], &[("real_view", Elementary::Real), ("same_real", Elementary::Real)]);
         at(Memory, Width::Long, &[700], &[("lreal_view", Elementary::Lreal)]);
     }
 }

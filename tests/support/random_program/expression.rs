@@ -3,7 +3,7 @@
 use rung::elementary::Elementary;
 use rung::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
 
-use super::Generator;
+use super::{Generator, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 const MILLISECOND: i64 = 1_000_000;
@@ -11,9 +11,15 @@ const MILLISECOND: i64 = 1_000_000;
 impl Generator {
     /// A value of a type; at most `depth` operators deep.
     pub(super) fn expression(&mut self, ty: Elementary, depth: usize) -> Expression {
-        if depth == 0 || self.dice.percent(25) {
+        // Checking refuses constants that overflow, so that arithmetic needs a variable.
+        if depth == 0 || self.dice.percent(25) || self.place(ty, Purpose::ReadVariable).is_none() {
             return self.operand(ty);
         }
+        self.operation(ty, depth)
+    }
+
+    /// An operator of a type of which there is a variable, which is somewhere in it.
+    fn operation(&mut self, ty: Elementary, depth: usize) -> Expression {
         if ty == Elementary::Bool && self.dice.percent(55) {
             return self.comparison(depth);
         }
@@ -70,12 +76,12 @@ impl Generator {
         drawing::expression(ExpressionKind::Binary(operator, Box::new(left), Box::new(right)))
     }
 
-    /// An expression whose type shows without what stands around it.
+    /// An expression whose type shows without what stands around it, and which is not constant where that can be.
     fn anchored(&mut self, ty: Elementary, depth: usize) -> Expression {
-        if depth > 0 && self.dice.percent(50) {
-            return self.expression(ty, depth);
+        if depth > 0 && self.dice.percent(50) && self.place(ty, Purpose::ReadVariable).is_some() {
+            return self.operation(ty, depth);
         }
-        match self.readable(ty) {
+        match self.readable(ty, Purpose::ReadVariable) {
             Some(reference) => drawing::expression(ExpressionKind::Read(reference)),
             None => self.literal(ty, true),
         }
@@ -84,11 +90,11 @@ impl Generator {
     fn operand(&mut self, ty: Elementary) -> Expression {
         if self.dice.percent(12)
             && let Some(narrow) = self.narrower(ty)
-            && let Some(reference) = self.place(narrow, false)
+            && let Some(reference) = self.place(narrow, Purpose::Read)
         {
             return drawing::expression(ExpressionKind::Read(reference));
         }
-        match self.readable(ty) {
+        match self.readable(ty, Purpose::Read) {
             Some(reference) if !self.dice.percent(15) => drawing::expression(ExpressionKind::Read(reference)),
             _ => self.literal(ty, false),
         }
@@ -112,16 +118,16 @@ impl Generator {
     }
 
     /// Something of a type to read: a variable, a member, a bit.
-    pub(super) fn readable(&mut self, ty: Elementary) -> Option<Reference> {
+    pub(super) fn readable(&mut self, ty: Elementary, purpose: Purpose) -> Option<Reference> {
         if ty == Elementary::Bool && self.dice.percent(10) {
-            return self.bit(false).or_else(|| self.place(ty, false));
+            return self.bit(purpose).or_else(|| self.place(ty, purpose));
         }
         if self.dice.percent(25)
             && let Some(member) = self.member(ty)
         {
             return Some(member);
         }
-        self.place(ty, false)
+        self.place(ty, purpose)
     }
 
     fn member(&mut self, ty: Elementary) -> Option<Reference> {
@@ -140,13 +146,10 @@ impl Generator {
         })
     }
 
-    /// A bit of a bit string or integer.
-    pub(super) fn bit(&mut self, writable: bool) -> Option<Reference> {
-        let ty = *self.dice.pick(&Elementary::ALL);
-        if ty == Elementary::Bool || !(ty.is_integer() || ty.is_bit_string()) {
-            return None;
-        }
-        let mut reference = self.place(ty, writable)?;
+    /// A bit of a bit string.
+    pub(super) fn bit(&mut self, purpose: Purpose) -> Option<Reference> {
+        let ty = *self.dice.pick(&[Elementary::Byte, Elementary::Word, Elementary::Dword, Elementary::Lword]);
+        let mut reference = self.place(ty, purpose)?;
         let last = ty.bits() as usize - 1;
         let bit = if self.dice.percent(30) { last } else { self.dice.below(last.min(4)) };
         reference.steps.push(Step::Bit(u8::try_from(bit).expect("types have at most 64 bits"), NOWHERE));

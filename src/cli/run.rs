@@ -1,0 +1,265 @@
+//! `rung run`: a program in real time, on a simulated panel.
+
+mod elements;
+mod engine;
+mod machine;
+mod plain;
+mod points;
+mod time;
+mod view;
+
+use std::io::IsTerminal;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use rung_runtime::host::{End, Histogram, Statistics};
+use rung_runtime::{Fault, Stopped};
+
+use super::load::Loaded;
+use super::{Failure, duration, load_checked, print, write_whole};
+use crate::check::Checked;
+use crate::diagnostic::Code;
+use crate::elementary::Value;
+use crate::logic::Program;
+use crate::logic::image::Slot;
+use crate::lower::lower;
+use crate::opt::optimise;
+use crate::replay::source_hash;
+use engine::{Engine, Kind};
+use machine::{Lost, Machine, Outcome, Timing};
+use points::Points;
+
+/// Cycles that a scan may take by default, and the least time that it then may take in any case: a shorter
+/// one would trip on a busy machine.
+const WATCHDOG_CYCLES: i64 = 10;
+const LEAST_DEFAULT_WATCHDOG: i64 = 100_000_000;
+
+/// The longest tick and cycle, an hour.
+const LONGEST_CYCLE: i64 = 3_600_000_000_000;
+
+/// Runs a program in real time on a simulated panel, until Ctrl-C
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The program; `-` is the standard input
+    file: PathBuf,
+    /// Time from one scan to the next, a multiple of the tick
+    #[arg(long, value_parser = duration::parse, default_value = "10ms", value_name = "TIME")]
+    cycle: i64,
+    /// Period of the tick interrupt, which is the grain of all times
+    #[arg(long, value_parser = duration::parse, default_value = "1ms", value_name = "TIME")]
+    tick: i64,
+    /// Which engine runs it
+    #[arg(long, value_enum, default_value = "jit")]
+    engine: Kind,
+    /// End after this time
+    #[arg(long = "for", value_parser = duration::parse, value_name = "TIME")]
+    length: Option<i64>,
+    /// A cycle that takes longer stops the program; 10 cycles, but at least 100 ms, unless given
+    #[arg(long, value_parser = duration::parse, value_name = "TIME")]
+    watchdog: Option<i64>,
+    /// Print plain lines also on a terminal
+    #[arg(long)]
+    plain: bool,
+    /// Set an input at the start, as `start=1`
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Where to leave a replay when the engines differ; beside the program, as `.replay.json`, unless given
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let timing = timing(arguments)?;
+    let (loaded, checked) = load_checked(&arguments.file)?;
+    let began = Instant::now();
+    let lowered = lower(&checked, &loaded.source, None)
+        .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image would be larger than 1 GiB"))?;
+    let program = optimise(lowered);
+    let engine = Engine::new(arguments.engine, &program)
+        .map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
+    let compiled_in = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
+    let points = Points::new(&checked, &program.layout);
+    let inputs = initial_inputs(&arguments.set, &points)?;
+    print(&description(arguments, &checked, &program, &engine, compiled_in))?;
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::new(Code::CannotStart, format!("Ctrl-C cannot be caught: {error}")))?;
+    let live = !arguments.plain && std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+    let told = if live { Vec::new() } else { points.told() };
+    let machine = Machine::start(engine, &program.layout, &inputs, timing, &told, stop)
+        .map_err(|error| Failure::new(Code::CannotStart, error.to_string()))?;
+    print(&format!("  {}\n", machine.scheduling))?;
+    let watched = if live {
+        view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
+    } else {
+        plain::watch(&machine, &told)
+    };
+
+    // Whoever watched may have gone, but the outputs are to be off before anything else.
+    machine.shared.stop.store(true, Ordering::Relaxed);
+    let shared = Arc::clone(&machine.shared);
+    let outcome = machine.finish();
+    watched?;
+    print(&summary(&shared.statistics, timing.watchdog))?;
+    match outcome {
+        Err(Lost::Hung) => {
+            let limit = time::rounded(timing.watchdog);
+            let message = format!("no sign of life for {limit}: the field or the scan hangs; the outputs are off");
+            Err(Failure::new(Code::Stopped, message))
+        }
+        Err(Lost::Panicked) => Err(Failure::new(Code::Stopped, "the scan panicked; the outputs are off")),
+        Ok(outcome) => ended(outcome, arguments, &loaded, &program),
+    }
+}
+
+/// Ticks from what was asked for.
+fn timing(arguments: &Arguments) -> Result<Timing, Failure> {
+    let bad = |message: String| Failure::new(Code::BadTiming, message);
+    let &Arguments { cycle, tick, .. } = arguments;
+    if cycle % tick != 0 {
+        let (cycle, tick) = (time::exact(cycle), time::exact(tick));
+        return Err(bad(format!("the cycle, {cycle}, is no multiple of the tick, {tick}")));
+    }
+    let count = |number: i64| u32::try_from(number).ok().and_then(NonZeroU32::new);
+    let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), cycle <= LONGEST_CYCLE) else {
+        return Err(bad("a tick may have at most 4 s, a cycle an hour".to_owned()));
+    };
+    Ok(Timing {
+        tick,
+        cycle: ticks,
+        ends_at: arguments.length.map(|length| length.unsigned_abs().div_ceil(u64::from(tick.get()))),
+        watchdog: arguments.watchdog.unwrap_or((cycle * WATCHDOG_CYCLES).max(LEAST_DEFAULT_WATCHDOG)).unsigned_abs(),
+    })
+}
+
+/// The inputs that `--set` names.
+fn initial_inputs(set: &[String], points: &Points) -> Result<Vec<(Slot, Value)>, Failure> {
+    let one = |text: &String| {
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| Failure::new(Code::BadLiteral, format!("{text:?} is not NAME=VALUE")))?;
+        let input = points
+            .input(name.trim())
+            .ok_or_else(|| Failure::new(Code::UndeclaredName, format!("there is no input {:?}", name.trim())))?;
+        let ty = input.slot.ty;
+        let value = points::read(ty, value.trim())
+            .ok_or_else(|| Failure::new(Code::OutOfRange, format!("{:?} is no value of {ty}", value.trim())))?;
+        Ok((input.slot.clone(), value))
+    };
+    set.iter().map(one).collect()
+}
+
+/// What was loaded and compiled.
+fn description(
+    arguments: &Arguments,
+    checked: &Checked,
+    program: &Program,
+    engine: &Engine,
+    compiled_in: u64,
+) -> String {
+    let counts = elements::count(checked);
+    let rungs = checked.rungs().len();
+    let code = engine
+        .code_bytes()
+        .map_or_else(String::new, |bytes| format!(", {bytes} bytes of code ({} a rung)", bytes.div_ceil(rungs.max(1))));
+    let boxes = if counts.boxes == 0 { String::new() } else { format!(", {} boxes", counts.boxes) };
+    format!(
+        "{}: {rungs} rungs, {} contacts, {} coils, {} blocks{boxes}\n  image {} bytes, {} instructions of logic{code}, \
+         compiled in {}\n  engine {}, cycle {}, tick {}\n",
+        checked.name(),
+        counts.contacts,
+        counts.coils,
+        counts.blocks,
+        program.layout.size(),
+        program.instructions.len(),
+        time::rounded(compiled_in),
+        arguments.engine.name(),
+        time::exact(arguments.cycle),
+        time::exact(arguments.tick),
+    )
+}
+
+/// The figures of a whole run.
+fn summary(statistics: &Statistics, watchdog: u64) -> String {
+    let line =
+        |name: &str, histogram: &Histogram| format!("  {name:<9} {} (p50 / p99 / max)\n", plain::quantiles(histogram));
+    format!(
+        "ended after {} cycles, {} overruns, {} skipped\n{}{}  {:<9} {}\n",
+        statistics.cycles(),
+        statistics.overruns(),
+        statistics.skipped(),
+        line("scan", &statistics.scan),
+        line("lateness", &statistics.lateness),
+        "watchdog",
+        time::rounded(watchdog),
+    )
+}
+
+/// What is to be said of a run that ended.
+fn ended(outcome: Outcome<Engine>, arguments: &Arguments, loaded: &Loaded, program: &Program) -> Result<(), Failure> {
+    let fault = match outcome.end {
+        End::Asked(Ok(())) => return Ok(()),
+        End::NoHeartbeat => {
+            return Err(Failure::new(
+                Code::Stopped,
+                "a cycle did not come in time for the watchdog; the outputs are off",
+            ));
+        }
+        End::Stopped(Stopped { fault, outputs_off: Ok(()) }) => fault,
+    };
+    match fault {
+        Fault::Watchdog { took, limit } => {
+            let (took, limit) = (time::rounded(took), time::rounded(limit));
+            let message = format!("a cycle took {took}, longer than the watchdog's {limit}; the outputs are off");
+            Err(Failure::new(Code::Stopped, message))
+        }
+        Fault::Distrusted => Err(differ(&outcome.engine, arguments, loaded, program)?),
+        Fault::AlreadyStopped => Err(Failure::new(Code::Stopped, "the controller had stopped before")),
+    }
+}
+
+/// Says where the engines differ, and leaves the replay.
+fn differ(engine: &Engine, arguments: &Arguments, loaded: &Loaded, program: &Program) -> Result<Failure, Failure> {
+    let Some((difference, mut replay)) = engine.difference(program) else {
+        return Ok(Failure::new(Code::EnginesDiffer, "the engines differ; the outputs are off"));
+    };
+    let values = difference.values.map_or_else(
+        || format!("{:?} interpreted, {:?} compiled", difference.bytes.0, difference.bytes.1),
+        |(first, second)| {
+            let [interpreted, compiled] = [first, second].map(points::shown);
+            let bytes = if interpreted == compiled {
+                format!(" (bytes {:?} and {:?})", difference.bytes.0, difference.bytes.1)
+            } else {
+                String::new()
+            };
+            format!("{interpreted} interpreted, {compiled} compiled{bytes}")
+        },
+    );
+    let rung = difference.rung.map_or_else(String::new, |(label, line)| format!("; written by {label}, line {line}"));
+    let others = match difference.others {
+        0 => String::new(),
+        others => format!("; {others} other values differ"),
+    };
+    let scan = replay.scans.last().map_or(0, |scan| scan.now);
+    let reason = format!("{}: {values}{rung}{others}, in the scan at {}", difference.name, time::exact(scan));
+    replay.program = arguments.file.display().to_string();
+    replay.source_hash = source_hash(&loaded.source);
+    replay.reason.clone_from(&reason);
+    let path = arguments.replay.clone().unwrap_or_else(|| default_replay(&arguments.file));
+    write_whole(&path, replay.to_json().as_bytes())?;
+    let message = format!(
+        "the engines differ; the outputs are off\n  {reason}\n  replay it with: rung sim --replay {}",
+        path.display()
+    );
+    Ok(Failure::new(Code::EnginesDiffer, message))
+}
+
+/// Where a replay of this program is left.
+fn default_replay(program: &Path) -> PathBuf {
+    if program == Path::new("-") { PathBuf::from("stdin.replay.json") } else { program.with_extension("replay.json") }
+}

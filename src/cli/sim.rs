@@ -1,0 +1,248 @@
+//! `rung sim`: a program in virtual time.
+
+use std::ffi::OsStr;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use rung_runtime::Scan;
+
+use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_bytes};
+use crate::diagnostic::Code;
+use crate::engine::both::Difference;
+use crate::engine::interp::Interpreter;
+use crate::engine::jit::Jit;
+use crate::logic::{Layout, Program};
+use crate::lower::lower;
+use crate::opt::optimise;
+use crate::replay::Replay;
+use crate::simulate::decimal::Milliseconds;
+use crate::simulate::{Schedule, Simulation, Stimuli};
+use crate::source::Source;
+use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
+
+/// Runs a program in virtual time and writes what its variables did
+///
+/// Scan k, from 0, happens at time k x cycle. The same files give the same bytes, on every engine.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The program; `-` is the standard input
+    file: PathBuf,
+    /// A CSV table of what is set when: `time_ms,name,name,…`
+    #[arg(long, value_name = "FILE.csv")]
+    stimuli: Option<PathBuf>,
+    /// Time from one scan to the next
+    #[arg(long, value_parser = duration::parse, default_value = "10ms")]
+    cycle: i64,
+    /// Run so many scans [default: until a second after the last stimulus, or 100 scans without stimuli]
+    #[arg(long, conflicts_with = "duration")]
+    scans: Option<u64>,
+    /// Run all scans before this time
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
+    duration: Option<i64>,
+    /// What runs the scans; `both` compares the whole image after each and stops at a difference
+    #[arg(long, value_enum, default_value = "jit")]
+    engine: Engine,
+    /// Write a trace: a table (`.csv`), waves (`.vcd`), a timing diagram (`.svg`), or a table on the standard output
+    /// (`-`, which is the default)
+    #[arg(long, value_name = "FILE")]
+    trace: Vec<PathBuf>,
+    /// Trace these variables only; a block instance stands for all of its outputs
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    signals: Option<Vec<String>>,
+    /// Run the scans of a replay file, which `rung run --engine both` leaves at a difference
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["stimuli", "cycle", "scans", "duration"])]
+    replay: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+enum Engine {
+    /// Compiled to machine code
+    Jit,
+    /// Interpreted
+    Interp,
+    /// Both, side by side
+    Both,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (loaded, checked) = load_checked(&arguments.file)?;
+    let program = lower(&checked, &loaded.source, None)
+        .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
+    let program = optimise(program);
+    let signals = match &arguments.signals {
+        None => Signal::all(&program.layout),
+        Some(names) => Signal::select(&program.layout, names)
+            .map_err(|name| Failure::new(Code::UndeclaredName, format!("there is no variable `{name}` to trace")))?,
+    };
+    let course = Course::read(arguments, &program.layout)?;
+    // Made before the outputs, so that what cannot be compiled leaves nothing.
+    let mut engines = Engines::new(arguments.engine, &program)?;
+    let paths = trace_paths(&arguments.trace)?;
+    let mut files = paths.iter().map(|(path, _)| WholeFile::create(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut outputs = Vec::new();
+    for ((path, format), file) in paths.iter().zip(&mut files) {
+        let trace = format.start(&program.name, signals.clone(), course.period(), file);
+        outputs.push((path, trace.map_err(|error| cannot_write(path, &error))?));
+    }
+
+    let mut simulation = course.start(&program.layout);
+    let mut beside = course.start(&program.layout);
+    while let Some(now) = simulation.step(&mut *engines.first) {
+        if let Some(second) = &mut engines.second {
+            beside.step(&mut **second);
+            if let Some(difference) = Difference::between(&program, simulation.image(), beside.image()) {
+                return Err(differ(now, &difference));
+            }
+        }
+        for (path, trace) in &mut outputs {
+            trace.record(now, simulation.image()).map_err(|error| cannot_write(path, &error))?;
+        }
+    }
+    for (path, mut trace) in outputs {
+        trace.finish().map_err(|error| cannot_write(path, &error))?;
+    }
+    files.into_iter().try_for_each(WholeFile::finish)
+}
+
+/// A format of traces.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Format {
+    Csv,
+    Vcd,
+    Svg,
+}
+
+impl Format {
+    fn start<'w>(
+        self,
+        program: &str,
+        signals: Vec<Signal>,
+        period: Period,
+        file: &'w mut WholeFile,
+    ) -> io::Result<Box<dyn Trace + 'w>> {
+        Ok(match self {
+            Self::Csv => Box::new(CsvTrace::new(signals, file)?),
+            Self::Vcd => Box::new(VcdTrace::new(program, signals, file)?),
+            Self::Svg => Box::new(SvgTrace::new(program, signals, period, file)),
+        })
+    }
+}
+
+/// The files that are asked for, each with its format; without any the standard output.
+fn trace_paths(asked: &[PathBuf]) -> Result<Vec<(&Path, Format)>, Failure> {
+    if asked.is_empty() {
+        return Ok(vec![(Path::new("-"), Format::Csv)]);
+    }
+    let mut paths: Vec<(&Path, Format)> = Vec::new();
+    for path in asked {
+        let extension = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+        let format = match extension.as_deref() {
+            _ if path == Path::new("-") => Format::Csv,
+            Some("csv") => Format::Csv,
+            Some("vcd") => Format::Vcd,
+            Some("svg") => Format::Svg,
+            _ => {
+                let message = format!("{} is no trace: its name must end in .csv, .vcd or .svg", path.display());
+                return Err(Failure::new(Code::UnknownFormat, message));
+            }
+        };
+        if paths.iter().any(|(earlier, _)| earlier == path) {
+            return Err(Failure::new(Code::CannotWrite, format!("{} is to be written twice", path.display())));
+        }
+        paths.push((path, format));
+    }
+    Ok(paths)
+}
+
+/// What drives the run.
+enum Course {
+    Stimulated(Stimuli, Schedule),
+    Replayed(Replay),
+}
+
+impl Course {
+    fn read(arguments: &Arguments, layout: &Layout) -> Result<Self, Failure> {
+        if let Some(path) = &arguments.replay {
+            let source = read_source(path)?;
+            let replay = Replay::parse(&source).and_then(|replay| replay.check(layout).map(|()| replay));
+            return replay.map(Self::Replayed).map_err(|problem| Failure::diagnostics(&source, &[problem]));
+        }
+        let stimuli = match &arguments.stimuli {
+            None => Stimuli::default(),
+            Some(path) => {
+                let source = read_source(path)?;
+                Stimuli::parse(&source, layout).map_err(|problems| Failure::diagnostics(&source, &problems))?
+            }
+        };
+        let cycle = arguments.cycle;
+        let schedule = match (arguments.scans, arguments.duration) {
+            (Some(scans), _) => Schedule::scans(cycle, scans),
+            (None, Some(duration)) => Schedule::before(cycle, duration),
+            (None, None) => Schedule::covering(cycle, &stimuli),
+        };
+        match schedule {
+            Some(schedule) => Ok(Self::Stimulated(stimuli, schedule)),
+            None => Err(Failure::new(Code::OutOfRange, "the last scan would come after the end of time, in 292 years")),
+        }
+    }
+
+    fn start<'a>(&'a self, layout: &'a Layout) -> Simulation<'a> {
+        match self {
+            Self::Stimulated(stimuli, schedule) => Simulation::new(layout, stimuli, *schedule),
+            Self::Replayed(replay) => Simulation::replaying(layout, replay),
+        }
+    }
+
+    fn period(&self) -> Period {
+        match self {
+            Self::Stimulated(_, schedule) => Period { start: 0, end: schedule.end(), cycle: schedule.cycle() },
+            Self::Replayed(replay) => Period::of(replay.scans.iter().map(|scan| scan.now)),
+        }
+    }
+}
+
+fn read_source(path: &Path) -> Result<Source, Failure> {
+    Source::decode(path.display().to_string(), &read_bytes(path)?)
+        .map_err(|(source, problem)| Failure::diagnostics(&source, &[problem]))
+}
+
+/// The engine that is traced, and the one that it is compared with.
+struct Engines {
+    first: Box<dyn Scan>,
+    second: Option<Box<dyn Scan>>,
+}
+
+impl Engines {
+    fn new(engine: Engine, program: &Program) -> Result<Self, Failure> {
+        let compiled = || -> Result<Box<dyn Scan>, Failure> {
+            let jit = Jit::compile(program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
+            Ok(Box::new(jit))
+        };
+        let interpreted = || Box::new(Interpreter::new(program));
+        Ok(match engine {
+            Engine::Jit => Self { first: compiled()?, second: None },
+            Engine::Interp => Self { first: interpreted(), second: None },
+            Engine::Both => Self { first: interpreted(), second: Some(compiled()?) },
+        })
+    }
+}
+
+/// What is said when the engines differ.
+fn differ(now: i64, difference: &Difference) -> Failure {
+    let values = match difference.values {
+        Some((first, second)) => format!("{first:?} interpreted, {second:?} compiled"),
+        None => format!("{:02x?} interpreted, {:02x?} compiled", difference.bytes.0, difference.bytes.1),
+    };
+    let rung = match &difference.rung {
+        Some((label, line)) => format!(", written last by {label} in line {line}"),
+        None => String::new(),
+    };
+    let message = format!(
+        "the engines differ after the scan at {} ms: {} is {values}{rung} ({} more differ)",
+        Milliseconds(now),
+        difference.name,
+        difference.others
+    );
+    Failure::new(Code::EnginesDiffer, message)
+}

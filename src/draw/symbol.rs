@@ -1,0 +1,264 @@
+//! What one element looks like: its kind, its texts cut to size, and the room that it needs.
+//!
+//! Sizes are in grid columns (one terminal column) and grid rows (one line). A symbol must know nothing of the
+//! place where it will stand.
+
+use std::collections::HashMap;
+
+use super::label;
+use crate::ladder::library::StandardBlock;
+use crate::ladder::{BlockCall, CoilKind, ContactKind, Expression, Program, Reference, Wire, key};
+
+/// The columns of the frame of a contact or coil: its two sides and the mark between.
+pub(super) const FRAME: usize = 3;
+/// The least columns of a contact or coil with the wire on both sides.
+const LEAST_COLUMNS: usize = 7;
+
+/// How wide texts may be, in columns.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// A name above a contact or a coil.
+    pub(super) name: usize,
+    /// The instance or the type of a block.
+    pub(super) block: usize,
+    /// An expression in a box.
+    pub(super) expression: usize,
+    /// What is written beside a pin.
+    pub(super) pin: usize,
+    /// The name of a pin.
+    pub(super) pin_name: usize,
+}
+
+impl Limits {
+    /// Limits that keep every element within a cell of that width, and a block within one of at least 32 columns.
+    pub(super) fn within(columns: usize) -> Self {
+        let pin_name = (columns / 6).clamp(4, 16);
+        // The names of two pins, what is wired to them, and all that is between.
+        let pin = (columns.saturating_sub(2 * pin_name + 9) / 2).clamp(6, 28);
+        Self {
+            name: columns.saturating_sub(2).clamp(4, 36),
+            block: 2 * pin_name,
+            expression: columns.saturating_sub(6).clamp(4, 60),
+            pin,
+            pin_name,
+        }
+    }
+}
+
+/// One drawn element.
+pub(super) struct Symbol {
+    pub(super) kind: SymbolKind,
+    /// The least columns that it needs, wires on both sides included.
+    pub(super) columns: usize,
+    /// Rows above its wire.
+    pub(super) above: usize,
+    /// Rows below its wire.
+    pub(super) below: usize,
+    /// Whether it only writes, so that it belongs at the right.
+    pub(super) is_output: bool,
+}
+
+/// What a symbol is, with its texts.
+pub(super) enum SymbolKind {
+    Contact { mark: char, name: String },
+    Coil { mark: char, name: String },
+    Box { text: String },
+    NodeStart { text: String },
+    NodeEnd { text: String },
+    Block(BlockBox),
+}
+
+/// The box of a block call.
+pub(super) struct BlockBox {
+    pub(super) instance: String,
+    pub(super) type_name: String,
+    /// The pins of the left side; power comes in at the first.
+    pub(super) left: Vec<PinLabel>,
+    /// The pins of the right side; power goes out at the first.
+    pub(super) right: Vec<PinLabel>,
+    /// Columns left of the box.
+    pub(super) left_columns: usize,
+    /// Columns of the box, borders included.
+    pub(super) box_columns: usize,
+}
+
+impl BlockBox {
+    /// Rows of pins.
+    pub(super) fn rows(&self) -> usize {
+        self.left.len().max(self.right.len())
+    }
+}
+
+/// One pin.
+pub(super) struct PinLabel {
+    /// Its name inside the box.
+    pub(super) name: String,
+    /// What is wired to it, beside the box; empty for nothing, or for the power.
+    pub(super) wired: String,
+}
+
+impl Symbol {
+    /// A contact.
+    pub(super) fn contact(kind: ContactKind, operand: &Expression, limits: Limits) -> Self {
+        let mark = match kind {
+            ContactKind::Open => ' ',
+            ContactKind::Closed => '/',
+            ContactKind::Rising => 'P',
+            ContactKind::Falling => 'N',
+        };
+        let name = label::expression(operand, limits.name);
+        let columns = (label::width(&name) + 2).max(LEAST_COLUMNS);
+        Self { kind: SymbolKind::Contact { mark, name }, columns, above: 1, below: 0, is_output: false }
+    }
+
+    /// A coil.
+    pub(super) fn coil(kind: CoilKind, target: &Reference, limits: Limits) -> Self {
+        let mark = match kind {
+            CoilKind::Plain => ' ',
+            CoilKind::Negated => '/',
+            CoilKind::Set => 'S',
+            CoilKind::Reset => 'R',
+            CoilKind::Rising => 'P',
+            CoilKind::Falling => 'N',
+        };
+        let name = label::reference(target, limits.name);
+        let columns = (label::width(&name) + 2).max(LEAST_COLUMNS);
+        Self { kind: SymbolKind::Coil { mark, name }, columns, above: 1, below: 0, is_output: true }
+    }
+
+    /// A box with a text.
+    pub(super) fn boxed(text: String, is_output: bool) -> Self {
+        let columns = label::width(&text) + 6;
+        Self { kind: SymbolKind::Box { text }, columns, above: 1, below: 1, is_output }
+    }
+
+    /// The connector of a node that the wire starts from.
+    pub(super) fn node_start(name: &str, limits: Limits) -> Self {
+        let text = node_text(name, limits);
+        let columns = label::width(&text) + 3;
+        Self { kind: SymbolKind::NodeStart { text }, columns, above: 0, below: 0, is_output: false }
+    }
+
+    /// The connector of a node that the wire ends at.
+    pub(super) fn node_end(name: &str, limits: Limits) -> Self {
+        let text = node_text(name, limits);
+        let columns = label::width(&text) + 3;
+        Self { kind: SymbolKind::NodeEnd { text }, columns, above: 0, below: 0, is_output: false }
+    }
+
+    /// A block. `circuit_labels` are what to write at the pins that circuits are wired to, in their order.
+    pub(super) fn block(
+        call: &BlockCall,
+        types: &InstanceTypes<'_>,
+        circuit_labels: Vec<String>,
+        limits: Limits,
+    ) -> Self {
+        let type_name =
+            call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| types.type_of(&call.instance.text));
+        let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
+        let instance = label::cut_name(&call.instance.text, limits.block);
+        let type_name = label::cut_name(type_name.unwrap_or("?"), limits.block);
+
+        let widest = |pins: &[PinLabel], text: fn(&PinLabel) -> &str| {
+            pins.iter().map(|pin| label::width(text(pin))).max().unwrap_or(0)
+        };
+        // Beside a text: the pin's wire and a blank.
+        let left_columns = (widest(&left, |pin| &pin.wired) + 2).max(2);
+        let right_columns = match widest(&right, |pin| &pin.wired) {
+            0 => 2,
+            text => text + 3,
+        };
+        let names = widest(&left, |pin| &pin.name) + 2 + widest(&right, |pin| &pin.name);
+        // The instance's name may reach over what stands at both sides of the box.
+        let overhang = 2 * left_columns.min(right_columns);
+        let below_instance = label::width(&instance).saturating_sub(overhang);
+        let box_columns = names.max(label::width(&type_name) + 2).max(below_instance) + 2;
+        let block = BlockBox { instance, type_name, left, right, left_columns, box_columns };
+        Self {
+            columns: left_columns + box_columns + right_columns,
+            above: 3,
+            below: block.rows(),
+            kind: SymbolKind::Block(block),
+            is_output: false,
+        }
+    }
+}
+
+/// What stands at a node's connector.
+pub(super) fn node_text(name: &str, limits: Limits) -> String {
+    format!(">{}>", label::cut_name(name, limits.name.saturating_sub(3).max(3)))
+}
+
+/// The types of the declared instances.
+pub(super) struct InstanceTypes<'a>(HashMap<String, &'a str>);
+
+impl<'a> InstanceTypes<'a> {
+    /// Those of a program.
+    pub(super) fn of(program: &'a Program) -> Self {
+        let typed = |variable: &'a crate::ladder::Variable| {
+            variable.type_name.as_ref().map(|ty| (variable.name.key(), ty.text.as_str()))
+        };
+        Self(program.variables.iter().filter_map(typed).collect())
+    }
+
+    fn type_of(&self, instance: &str) -> Option<&'a str> {
+        self.0.get(&key(instance)).copied()
+    }
+}
+
+/// The pins of both sides, those that power flows through first, then the block's own in their order, wired or
+/// not, then what else the call names.
+fn pins(
+    call: &BlockCall,
+    block: Option<StandardBlock>,
+    circuit_labels: Vec<String>,
+    limits: Limits,
+) -> (Vec<PinLabel>, Vec<PinLabel>) {
+    let pin = |name: &str, wired: String| PinLabel { name: label::cut_name(name, limits.pin_name), wired };
+    let mut circuit_labels = circuit_labels.into_iter();
+    // What is wired, taken out below as the block's pins are listed.
+    let mut inputs: Vec<(&str, String)> = Vec::new();
+    let mut outputs: Vec<(&str, String)> = Vec::new();
+    for argument in &call.arguments {
+        let name = argument.pin.text.as_str();
+        match &argument.wire {
+            Wire::Value(value) => inputs.push((name, label::expression(value, limits.pin))),
+            Wire::Circuit(_) => inputs.push((name, circuit_labels.next().unwrap_or_default())),
+            Wire::Output(target) => {
+                outputs.push((name, format!("=> {}", label::reference(target, limits.pin.saturating_sub(3).max(4)))));
+            }
+        }
+    }
+    let is_wired = |wired: &[(&str, String)], name: &str| wired.iter().any(|(pin, _)| pin.eq_ignore_ascii_case(name));
+    let take = |wired: &mut Vec<(&str, String)>, name: &str| {
+        let found = wired.iter().position(|(pin, _)| pin.eq_ignore_ascii_case(name));
+        found.map_or_else(String::new, |at| wired.remove(at).1)
+    };
+    let is_bool = |pin: &&crate::ladder::library::Pin| pin.ty == crate::elementary::Elementary::Bool;
+
+    let power_in = block.map(|block| match block.inputs().iter().find(is_bool) {
+        Some(first) if !is_wired(&inputs, first.name) => first.name,
+        _ => "EN",
+    });
+    let mut left = vec![pin(power_in.unwrap_or(""), String::new())];
+    for input in block.map_or(&[][..], StandardBlock::inputs) {
+        if Some(input.name) != power_in {
+            left.push(pin(input.name, take(&mut inputs, input.name)));
+        }
+    }
+    left.extend(inputs.into_iter().map(|(name, wired)| pin(name, wired)));
+
+    let chosen = call.power_output.as_ref().map(|name| name.text.as_str());
+    let power_out =
+        chosen.or_else(|| block.map(|block| block.outputs().iter().find(is_bool).map_or("ENO", |first| first.name)));
+    let mut right = vec![pin(power_out.unwrap_or(""), String::new())];
+    for output in block.map_or(&[][..], StandardBlock::outputs) {
+        let carries_power = power_out.is_some_and(|power| power.eq_ignore_ascii_case(output.name));
+        if !carries_power {
+            right.push(pin(output.name, take(&mut outputs, output.name)));
+        }
+    }
+    // An output that is wired and carries the power as well comes here, a second time.
+    right.extend(outputs.into_iter().map(|(name, wired)| pin(name, wired)));
+    (left, right)
+}

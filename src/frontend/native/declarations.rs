@@ -1,0 +1,126 @@
+//! Declarations: `var runs, faults : INT at %MW4 := 5 retain`.
+
+use super::parser::{Parse, Parser};
+use super::token::Kind;
+use super::{elements, literals};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ladder::{Address, Expression, Name, Variable, VariableClass};
+use crate::source::Span;
+
+/// What stands behind the names of a declaration, each with its place.
+#[derive(Default)]
+struct Clauses {
+    type_name: Option<(Name, Span)>,
+    address: Option<(Address, Span)>,
+    initial: Option<(Expression, Span)>,
+    retain: Option<((), Span)>,
+}
+
+impl Parser<'_> {
+    pub(super) fn declaration(&mut self, class: VariableClass) -> Parse<()> {
+        let start = self.token.span;
+        if !self.program.rungs.is_empty() {
+            let problem = Diagnostic::new(Code::UnexpectedToken, start, "a declaration stands behind a rung");
+            self.report(problem.hint("declarations stand before the first rung"));
+        }
+        self.advance();
+        let mut names = Vec::new();
+        loop {
+            let at = self.token.span.start;
+            names.push(self.name("the name of a variable")?);
+            self.anchor(at);
+            if !self.take(Kind::Comma) {
+                break;
+            }
+        }
+        let clauses_start = self.end;
+        let clauses = self.clauses()?;
+        let span = self.since(start.start);
+        // A long clause behind many names must not make a large program of a small file.
+        let copied = (names.len() - 1).saturating_mul(self.since(clauses_start).range().len());
+        if copied > self.copies_left {
+            let problem = Diagnostic::new(Code::FileTooLarge, span, "these clauses are too long for so many names");
+            return self.give_up(problem.hint("declare the variables one by one, or in smaller groups"));
+        }
+        self.copies_left -= copied;
+        self.item_end("a clause (`: TYPE`, `at`, `:=`, `retain`), another declaration or a rung")?;
+        let mut variable = Variable {
+            class,
+            name: Name::new("", span),
+            type_name: clauses.type_name.map(|(name, _)| name),
+            address: clauses.address.map(|(address, _)| address),
+            initial: clauses.initial.map(|(initial, _)| initial),
+            retain: clauses.retain.is_some(),
+            span,
+        };
+        if let Some(last) = names.pop() {
+            self.program.variables.extend(names.into_iter().map(|name| Variable { name, ..variable.clone() }));
+            variable.name = last;
+            self.program.variables.push(variable);
+        }
+        Ok(())
+    }
+
+    fn clauses(&mut self) -> Parse<Clauses> {
+        let mut clauses = Clauses::default();
+        loop {
+            let start = self.token.span.start;
+            if self.take(Kind::Colon) {
+                let name = self.name("the name of a type")?;
+                self.clause(&mut clauses.type_name, name, start, "type");
+            } else if self.take(Kind::Assign) {
+                let initial = self.expression()?;
+                self.clause(&mut clauses.initial, initial, start, "initial value");
+            } else if self.at_word("retain") {
+                self.advance();
+                self.clause(&mut clauses.retain, (), start, "`retain`");
+            } else if self.at_word("at") {
+                self.advance();
+                if self.token.kind != Kind::Address {
+                    let problem = self.unexpected("an address such as %IX0.3");
+                    return self.give_up(problem);
+                }
+                let address = self.address();
+                self.clause(&mut clauses.address, address, start, "address");
+            } else {
+                return self.no_clause().map(|()| clauses);
+            }
+        }
+    }
+
+    /// Helps with what is often meant for a clause.
+    fn no_clause(&mut self) -> Parse<()> {
+        let problem = self.unexpected("a clause, another declaration or a rung");
+        match self.token.kind {
+            Kind::Equal => self.give_up(problem.hint("an initial value is given with :=")),
+            Kind::Address => self.give_up(problem.hint("an address stands behind `at`")),
+            kind if kind.is_name() => self.give_up(problem.hint("names are parted by commas, and a type follows `:`")),
+            Kind::LeftParenthesis | Kind::LeftBracket | Kind::LeftBrace => {
+                self.give_up(problem.hint("circuits stand in rungs: start them with `rung`"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn clause<T>(&mut self, place: &mut Option<(T, Span)>, value: T, start: u32, what: &str) {
+        let span = self.since(start);
+        match place {
+            None => *place = Some((value, span)),
+            Some((_, first)) => {
+                let problem = Diagnostic::new(Code::DuplicateClause, span, format!("the {what} was given before"));
+                self.report(problem.related(*first, "here"));
+            }
+        }
+    }
+
+    /// The address that is the current token. One that cannot be read is reported, and another put in its place.
+    pub(super) fn address(&mut self) -> Address {
+        let span = self.token.span;
+        let address = literals::address(self.source.slice(span), span).unwrap_or_else(|problem| {
+            self.report_literal(Code::BadAddress, span, problem);
+            elements::placeholder_address(span)
+        });
+        self.advance();
+        address
+    }
+}

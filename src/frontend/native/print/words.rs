@@ -1,0 +1,307 @@
+//! What stands on one line whatever its length: names, literals, references, expressions, and whole elements where
+//! there is room.
+
+use std::borrow::Cow;
+
+use super::super::literals::UNITS;
+use super::super::token::is_plain_name;
+use crate::ladder::{
+    Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind,
+    Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Width, Wire,
+};
+
+/// A name, in back quotes if it needs them.
+pub(super) fn name(text: &str) -> Cow<'_, str> {
+    if is_plain_name(text) {
+        return Cow::Borrowed(text);
+    }
+    let spelled = text.replace('`', "'").replace(['\n', '\r'], " ");
+    Cow::Owned(format!("`{spelled}`"))
+}
+
+/// A title in quotes, with escapes for what cannot stand between them.
+pub(super) fn title(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' => quoted.push_str("$\""),
+            '$' => quoted.push_str("$$"),
+            '\n' => quoted.push_str("$N"),
+            '\r' => quoted.push_str("$R"),
+            '\t' => quoted.push_str("$T"),
+            control if control.is_control() => quoted.push_str(&format!("${:04X}", u32::from(control))),
+            other => quoted.push(other),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// An address; a bit's address always with its `X`.
+pub(super) fn address(address: &Address) -> String {
+    let area = match address.area {
+        Area::Input => 'I',
+        Area::Output => 'Q',
+        Area::Memory => 'M',
+    };
+    let width = match address.width {
+        Width::Bit => 'X',
+        Width::Byte => 'B',
+        Width::Word => 'W',
+        Width::Double => 'D',
+        Width::Long => 'L',
+    };
+    let numbers: Vec<String> = address.numbers.iter().map(u32::to_string).collect();
+    format!("%{area}{width}{}", numbers.join("."))
+}
+
+pub(super) fn reference(reference: &Reference) -> String {
+    let (mut text, mut dot) = match &reference.root {
+        Root::Name(root) => (name(&root.text).into_owned(), "."),
+        // Touching, the bit would be one more number of the address.
+        Root::Address(root) => (address(root), " ."),
+    };
+    for step in &reference.steps {
+        text.push_str(dot);
+        dot = ".";
+        match step {
+            Step::Member(member) => text.push_str(&name(&member.text)),
+            Step::Bit(bit, _) => text.push_str(&bit.to_string()),
+        }
+    }
+    text
+}
+
+pub(super) fn expression(expression: &Expression) -> String {
+    let mut text = String::new();
+    push_expression(&mut text, expression);
+    text
+}
+
+fn push_expression(text: &mut String, expression: &Expression) {
+    match &expression.kind {
+        ExpressionKind::Literal(value) => text.push_str(&literal(value)),
+        ExpressionKind::Read(read) => text.push_str(&reference(read)),
+        ExpressionKind::Unary(operator, operand) => {
+            text.push_str(match operator {
+                UnaryOperator::Not => "NOT ",
+                UnaryOperator::Negate => "-",
+            });
+            // Two minus signs would start a comment.
+            let minus = *operator == UnaryOperator::Negate && starts_with_minus(operand);
+            push_operand(text, operand, minus || matches!(operand.kind, ExpressionKind::Binary(..)));
+        }
+        ExpressionKind::Binary(operator, left, right) => {
+            push_operand(text, left, precedence(left) < operator.precedence());
+            text.push(' ');
+            text.push_str(operator.symbol());
+            text.push(' ');
+            push_operand(text, right, precedence(right) <= operator.precedence());
+        }
+    }
+}
+
+fn push_operand(text: &mut String, operand: &Expression, parentheses: bool) {
+    if parentheses {
+        text.push('(');
+    }
+    push_expression(text, operand);
+    if parentheses {
+        text.push(')');
+    }
+}
+
+/// How tightly the outermost operator binds; what has none binds tightest.
+fn precedence(expression: &Expression) -> u8 {
+    match &expression.kind {
+        ExpressionKind::Binary(operator, ..) => operator.precedence(),
+        _ => BinaryOperator::Multiply.precedence() + 1,
+    }
+}
+
+fn starts_with_minus(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Unary(operator, _) => *operator == UnaryOperator::Negate,
+        ExpressionKind::Literal(Literal::Real { value, ty: None }) => value.is_sign_negative(),
+        _ => false,
+    }
+}
+
+fn literal(literal: &Literal) -> String {
+    let typed = |ty: &Option<_>, digits: String| match ty {
+        Some(ty) => format!("{ty}#{digits}"),
+        None => digits,
+    };
+    match literal {
+        Literal::Bool(true) => "TRUE".to_owned(),
+        Literal::Bool(false) => "FALSE".to_owned(),
+        Literal::Integer { value, base, ty } => typed(
+            ty,
+            match base {
+                2 => format!("2#{value:b}"),
+                8 => format!("8#{value:o}"),
+                16 => format!("16#{value:X}"),
+                _ => value.to_string(),
+            },
+        ),
+        Literal::Real { value, ty } => typed(ty, real(*value)),
+        Literal::Time(nanoseconds) => duration(*nanoseconds),
+    }
+}
+
+/// The shortest digits that give the value again, always with a point.
+fn real(value: f64) -> String {
+    let digits = format!("{value:?}");
+    match digits.split_once('e') {
+        Some((mantissa, exponent)) if !mantissa.contains('.') => format!("{mantissa}.0e{exponent}"),
+        _ => digits,
+    }
+}
+
+fn duration(nanoseconds: i64) -> String {
+    let mut text = String::from(if nanoseconds < 0 { "T#-" } else { "T#" });
+    let mut rest = nanoseconds.unsigned_abs();
+    for (unit, size) in UNITS {
+        if rest >= size {
+            text.push_str(&format!("{}{unit}", rest / size));
+            rest %= size;
+        }
+    }
+    if nanoseconds == 0 {
+        text.push_str("0s");
+    }
+    text
+}
+
+/// A rung's node, `>name>`.
+pub(super) fn node(text: &str) -> String {
+    format!(">{}>", name(text))
+}
+
+/// Whether a branch has to say that it is a wire: without elements it would otherwise start at its node.
+pub(super) fn is_bare_feed(branch: &Branch) -> bool {
+    branch.from.is_none() && branch.elements.is_empty() && branch.to.is_some()
+}
+
+/// `instance:TYPE(`
+pub(super) fn block_head(call: &BlockCall) -> String {
+    let instance = name(&call.instance.text);
+    match &call.type_name {
+        Some(type_name) => format!("{instance}:{}(", name(&type_name.text)),
+        None => format!("{instance}("),
+    }
+}
+
+/// `).Q`
+pub(super) fn block_tail(call: &BlockCall) -> String {
+    call.power_output.as_ref().map_or(")".to_owned(), |output| format!(").{}", name(&output.text)))
+}
+
+/// An argument that is no circuit; `None` for one that is.
+pub(super) fn simple_argument(argument: &Argument) -> Option<String> {
+    let pin = name(&argument.pin.text);
+    match &argument.wire {
+        Wire::Value(value) => Some(format!("{pin} := {}", expression(value))),
+        Wire::Output(target) => Some(format!("{pin} => {}", reference(target))),
+        Wire::Circuit(_) => None,
+    }
+}
+
+/// A contact, a coil or braces; `None` for what has circuits or arguments in it.
+pub(super) fn simple_element(element: &Element) -> Option<String> {
+    Some(match &element.kind {
+        ElementKind::Contact { kind, operand } => {
+            let sign = match kind {
+                ContactKind::Open => "",
+                ContactKind::Closed => "/",
+                ContactKind::Rising => "^",
+                ContactKind::Falling => "^/",
+            };
+            format!("{sign}{}", expression(operand))
+        }
+        ElementKind::Coil { kind, target } => {
+            let sign = match kind {
+                CoilKind::Plain => "",
+                CoilKind::Negated => "/",
+                CoilKind::Set => "S ",
+                CoilKind::Reset => "R ",
+                CoilKind::Rising => "P ",
+                CoilKind::Falling => "N ",
+            };
+            format!("({sign}{})", reference(target))
+        }
+        ElementKind::Condition(condition) => format!("{{{}}}", expression(condition)),
+        ElementKind::Assignment { target, value } => format!("{{{} := {}}}", reference(target), expression(value)),
+        ElementKind::Block(_) | ElementKind::Parallel(_) => return None,
+    })
+}
+
+/// Bytes after which an element is certainly too wide for a line, so that trying costs little at every level.
+const LONGEST_LINE: usize = 4 * super::LINE_WIDTH;
+
+/// A circuit in brackets on one line; `None` if it is too long.
+pub(super) fn short_circuit(circuit: &Circuit) -> Option<String> {
+    let mut text = String::new();
+    push_circuit(&mut text, circuit)?;
+    Some(text)
+}
+
+/// An element on one line; `None` if it is too long.
+pub(super) fn short_element(element: &Element) -> Option<String> {
+    let mut text = String::new();
+    push_element(&mut text, element)?;
+    Some(text)
+}
+
+fn push_element(text: &mut String, element: &Element) -> Option<()> {
+    match &element.kind {
+        ElementKind::Parallel(circuit) => push_circuit(text, circuit)?,
+        ElementKind::Block(call) => {
+            text.push_str(&block_head(call));
+            for (index, argument) in call.arguments.iter().enumerate() {
+                text.push_str(if index == 0 { "" } else { ", " });
+                match &argument.wire {
+                    Wire::Circuit(circuit) => {
+                        text.push_str(&name(&argument.pin.text));
+                        text.push_str(" := ");
+                        push_circuit(text, circuit)?;
+                    }
+                    _ => text.push_str(&simple_argument(argument)?),
+                }
+                still_short(text)?;
+            }
+            text.push_str(&block_tail(call));
+        }
+        _ => text.push_str(&simple_element(element)?),
+    }
+    still_short(text)
+}
+
+fn push_circuit(text: &mut String, circuit: &Circuit) -> Option<()> {
+    text.push('[');
+    for (index, branch) in circuit.branches.iter().enumerate() {
+        text.push_str(if index == 0 { "" } else { " |" });
+        if let Some(from) = &branch.from {
+            text.push(' ');
+            text.push_str(&node(&from.text));
+        }
+        if is_bare_feed(branch) {
+            text.push_str(" -");
+        }
+        for element in &branch.elements {
+            text.push(' ');
+            push_element(text, element)?;
+        }
+        if let Some(to) = &branch.to {
+            text.push(' ');
+            text.push_str(&node(&to.text));
+        }
+        still_short(text)?;
+    }
+    text.push_str(" ]");
+    Some(())
+}
+
+fn still_short(text: &str) -> Option<()> {
+    (text.len() <= LONGEST_LINE).then_some(())
+}

@@ -1,0 +1,202 @@
+//! The verifier: what every program must fulfil before an engine may run it.
+//!
+//! It checks, in time linear in the program but for sorting its slots, that
+//!
+//! - the layout is sound: aligned slots inside the image that do not overlap, unique names, initial values of their
+//!   slots' types, observed slots that exist, runs that cover their slots, tail padding
+//!   (see [`Layout::problems`](super::Layout::problems));
+//! - sections are in order and together cover all instructions, their origins exist, and the first starts a chunk;
+//! - every operand is defined before, in the same chunk, and not by a store, which has no value;
+//! - every slot that is loaded or stored exists and has the instruction's type, and a stored value has it too;
+//! - constants are in register form;
+//! - the types of operands and results are those of the op table, and of [`Op`]'s description.
+//!
+//! It must never panic, whatever the program.
+
+use std::fmt;
+
+use super::{Instruction, Op, Program, SlotId, ValueId};
+use crate::elementary::{Elementary, canonical};
+
+/// What is wrong with a program.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Problem {
+    /// The place of the instruction, if it is about one.
+    pub instruction: Option<usize>,
+    /// What is wrong, in one line.
+    pub message: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.instruction {
+            Some(index) => write!(f, "v{index}: {}", self.message),
+            None => f.write_str(&self.message),
+        }
+    }
+}
+
+/// Checks a program.
+///
+/// # Errors
+/// All that is wrong with it, but that nothing is said about instructions when the sections are out of order.
+pub fn verify(program: &Program) -> Result<(), Vec<Problem>> {
+    let mut problems: Vec<Problem> =
+        program.layout.problems().into_iter().map(|message| Problem { instruction: None, message }).collect();
+    let (mut start, mut chunk_start) = (0, 0);
+    for (index, section) in program.sections.iter().enumerate() {
+        let mut problem = |message| problems.push(Problem { instruction: None, message });
+        let end = section.end as usize;
+        if end < start || end > program.instructions.len() {
+            problem(format!("section {index} cannot end at {end}"));
+            return Err(problems);
+        }
+        if section.origin as usize >= program.origins.len() {
+            problem(format!("section {index} has the origin {}, which there is not", section.origin));
+        }
+        if index == 0 && !section.starts_chunk {
+            problem("the first section does not start a chunk".to_owned());
+        }
+        if section.starts_chunk {
+            chunk_start = start;
+        }
+        for place in start..end {
+            if let Err(message) = instruction(program, chunk_start, place) {
+                problems.push(Problem { instruction: Some(place), message });
+            }
+        }
+        start = end;
+    }
+    if start != program.instructions.len() {
+        let message = format!("the sections end at {start}, before the instructions do");
+        problems.push(Problem { instruction: None, message });
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<(), String> {
+    let Instruction { ty, op } = program.instructions[place];
+    let same = |what: fmt::Arguments<'_>, is: Elementary, expected: Elementary| {
+        if is == expected { Ok(()) } else { Err(format!("{what} is {is}, but {expected} belongs here")) }
+    };
+    let operand = |value: ValueId| {
+        if value.index() >= place {
+            return Err(format!("{value} is used before it is defined"));
+        }
+        if value.index() < chunk_start {
+            return Err(format!("{value} is of an earlier chunk"));
+        }
+        match program.instructions[value.index()] {
+            Instruction { op: Op::Store(..), .. } => Err(format!("{value} is a store, which has no value")),
+            Instruction { ty, .. } => Ok(ty),
+        }
+    };
+    let expect = |value: ValueId, expected: Elementary| same(format_args!("{value}"), operand(value)?, expected);
+    let result = |expected: Elementary| same(format_args!("the result"), ty, expected);
+    let slot = |slot: SlotId| match program.layout.slots().get(slot.index()) {
+        Some(found) => same(format_args!("{slot}"), found.ty, ty),
+        None => Err(format!("{slot} does not exist")),
+    };
+    let takes = |mnemonic: &str, domain: super::Domain| {
+        if domain.contains(ty) { Ok(()) } else { Err(format!("{mnemonic} does not take {ty}")) }
+    };
+    match op {
+        Op::Constant(bits) if canonical(ty, bits) != bits => Err(format!("{bits:#x} is no {ty} in register form")),
+        Op::Constant(_) => Ok(()),
+        Op::Now => result(Elementary::Time),
+        Op::Load(from) => slot(from),
+        Op::Store(to, a) => slot(to).and(expect(a, ty)),
+        Op::Unary(op, a) => takes(op.mnemonic(), op.domain()).and(expect(a, ty)),
+        Op::Binary(op, a, b) => {
+            let second = if op.takes_amount() { Elementary::Udint } else { ty };
+            takes(op.mnemonic(), op.domain()).and(expect(a, ty)).and(expect(b, second))
+        }
+        Op::Compare(_, a, b) => result(Elementary::Bool).and(expect(b, operand(a)?)),
+        Op::Select(condition, a, b) => expect(condition, Elementary::Bool).and(expect(a, ty)).and(expect(b, ty)),
+        Op::Convert(a) => operand(a).map(|_| ()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elementary::Value;
+    use crate::logic::image::LayoutBuilder;
+    use crate::logic::{Area, Binary, Builder, Compare, Origin, Slot, random};
+
+    /// v0 = load s0, v1 = load s1, v2 = and v0 v0, v3 = store s0 v2 | v4 = lt v1 v1 in two sections.
+    fn program() -> Program {
+        let mut layout = LayoutBuilder::new();
+        for (name, ty) in [("a", Elementary::Bool), ("n", Elementary::Int)] {
+            let initial = Value::default_of(ty);
+            let slot =
+                Slot { name: name.to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+            layout.slot(slot);
+        }
+        let mut builder = Builder::new("p", layout.finish(None).unwrap());
+        let (a, n) = (builder.load(SlotId(0)), builder.load(SlotId(1)));
+        let both = builder.and(a, a);
+        builder.store(SlotId(0), both);
+        builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+        builder.compare(Compare::Less, n, n);
+        builder.end_section(Origin { label: "r2".to_owned(), line: 2 });
+        builder.finish()
+    }
+
+    fn message_of(change: impl Fn(&mut Program)) -> Vec<String> {
+        let mut program = program();
+        assert_eq!(verify(&program), Ok(()));
+        change(&mut program);
+        verify(&program).unwrap_err().iter().map(Problem::to_string).collect()
+    }
+
+    #[test]
+    fn random_programs_pass() {
+        for seed in 0..200 {
+            assert_eq!(verify(&random::program(seed)), Ok(()), "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn broken_instructions_are_named() {
+        let (v, int) = (ValueId, Elementary::Int);
+        let cases = [
+            (2, Elementary::Bool, Op::Binary(Binary::And, v(0), v(2)), "v2: v2 is used before it is defined"),
+            (2, Elementary::Bool, Op::Binary(Binary::And, v(0), v(1)), "v2: v1 is INT, but BOOL belongs here"),
+            (2, int, Op::Binary(Binary::And, v(1), v(1)), "v2: and does not take INT"),
+            (2, Elementary::Word, Op::Binary(Binary::ShiftLeft, v(0), v(1)), "v2: v0 is BOOL, but WORD belongs here"),
+            (4, Elementary::Bool, Op::Convert(v(3)), "v4: v3 is a store, which has no value"),
+            (4, int, Op::Compare(Compare::Less, v(1), v(1)), "v4: the result is INT, but BOOL belongs here"),
+            (4, Elementary::Bool, Op::Compare(Compare::Less, v(0), v(1)), "v4: v1 is INT, but BOOL belongs here"),
+            (4, int, Op::Select(v(1), v(1), v(1)), "v4: v1 is INT, but BOOL belongs here"),
+            (4, int, Op::Load(SlotId(0)), "v4: s0 is BOOL, but INT belongs here"),
+            (4, int, Op::Load(SlotId(2)), "v4: s2 does not exist"),
+            (4, int, Op::Store(SlotId(1), v(0)), "v4: v0 is BOOL, but INT belongs here"),
+            (4, int, Op::Constant(0xFFFF), "v4: 0xffff is no INT in register form"),
+            (4, int, Op::Now, "v4: the result is INT, but TIME belongs here"),
+        ];
+        for (place, ty, op, expected) in cases {
+            let messages = message_of(|program| program.instructions[place] = Instruction { ty, op });
+            assert!(messages.iter().any(|message| message == expected), "{messages:?} lacks {expected}");
+        }
+    }
+
+    #[test]
+    fn broken_sections_are_named() {
+        assert_eq!(
+            message_of(|program| program.sections[1].end = 4),
+            ["the sections end at 4, before the instructions do"]
+        );
+        assert_eq!(message_of(|program| program.sections[1].end = 3), ["section 1 cannot end at 3"]);
+        assert_eq!(message_of(|program| program.sections[1].end = 6), ["section 1 cannot end at 6"]);
+        assert_eq!(
+            message_of(|program| program.sections[1].origin = 2),
+            ["section 1 has the origin 2, which there is not"]
+        );
+        assert_eq!(
+            message_of(|program| program.sections[0].starts_chunk = false),
+            ["the first section does not start a chunk"]
+        );
+        assert_eq!(message_of(|program| program.sections[1].starts_chunk = true), ["v4: v1 is of an earlier chunk"]);
+    }
+}

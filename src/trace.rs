@@ -1,0 +1,127 @@
+//! Traces: what the variables were after every scan, written as a table, as waves or as a picture.
+//!
+//! A trace is made scan by scan as it is recorded, in memory that does not grow with the number of scans, and its
+//! bytes are determined by what was recorded: this module must never read a clock, and writes only to what it is given.
+
+mod csv;
+mod svg;
+mod vcd;
+
+use std::collections::{HashMap, HashSet};
+use std::fmt;
+use std::io;
+
+use crate::elementary::{Elementary, Value, f32_of};
+use crate::logic::image::Observed;
+use crate::logic::{Area, Layout, Slot};
+use crate::simulate::decimal::Milliseconds;
+
+pub use self::csv::CsvTrace;
+pub use self::svg::{Period, SvgTrace};
+pub use self::vcd::VcdTrace;
+
+/// A trace that is being recorded.
+pub trait Trace {
+    /// Records the variables as they are in an image, after the scan at `now` nanoseconds. Times never go back.
+    ///
+    /// # Errors
+    /// When what it is written to fails.
+    ///
+    /// # Panics
+    /// When the image is shorter than the layout of the signals.
+    fn record(&mut self, now: i64, image: &[u8]) -> io::Result<()>;
+
+    /// Writes what is still to be written. Nothing may be recorded after.
+    ///
+    /// # Errors
+    /// When what it is written to fails.
+    fn finish(&mut self) -> io::Result<()>;
+}
+
+/// A variable of a trace.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Signal {
+    name: String,
+    slot: Slot,
+}
+
+impl Signal {
+    /// Its name in the trace: `name`, or `instance.member`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its type.
+    pub fn ty(&self) -> Elementary {
+        self.slot.ty
+    }
+
+    /// The part of the image that it belongs to.
+    pub fn area(&self) -> Area {
+        self.slot.area
+    }
+
+    /// The block instance that it is a member of, if any, and its name there. The point of an address, such as
+    /// `%IX0.3`, parts nothing.
+    pub fn parts(&self) -> (Option<&str>, &str) {
+        match self.name.rsplit_once('.') {
+            Some((instance, member)) if !self.name.starts_with('%') => (Some(instance), member),
+            _ => (None, &self.name),
+        }
+    }
+
+    /// Its value in an image.
+    fn read(&self, image: &[u8]) -> Value {
+        self.slot.read(image)
+    }
+
+    /// Everything that can be observed, in order of declaration.
+    pub fn all(layout: &Layout) -> Vec<Self> {
+        let signal =
+            |observed: &Observed| Self { name: observed.name.clone(), slot: layout.slot(observed.slot).clone() };
+        layout.observed().iter().map(signal).collect()
+    }
+
+    /// The named ones, in the order named. The name of a block instance stands for all of its members.
+    ///
+    /// # Errors
+    /// The first name that there is not.
+    pub fn select(layout: &Layout, names: &[String]) -> Result<Vec<Self>, String> {
+        let all = Self::all(layout);
+        let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
+        for (index, signal) in all.iter().enumerate() {
+            by_name.entry(signal.name.to_lowercase()).or_default().push(index);
+            if let (Some(instance), _) = signal.parts() {
+                by_name.entry(instance.to_lowercase()).or_default().push(index);
+            }
+        }
+        let mut seen = HashSet::new();
+        let mut selected = Vec::new();
+        for name in names {
+            let found = by_name.get(&name.to_lowercase()).ok_or(name)?;
+            selected.extend(found.iter().filter(|index| seen.insert(**index)).map(|index| all[*index].clone()));
+        }
+        Ok(selected)
+    }
+}
+
+/// A value as a trace spells it: BOOL as 0 or 1, TIME in milliseconds with as many decimals as it needs, REAL and
+/// LREAL in the shortest form that reads back as the same number.
+pub(crate) struct Spelled(pub(crate) Value);
+
+impl fmt::Display for Spelled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bits = self.0.bits();
+        let real = match self.0.ty() {
+            Elementary::Time => return Milliseconds(bits.cast_signed()).fmt(f),
+            Elementary::Real => format!("{:?}", f32_of(bits)),
+            Elementary::Lreal => format!("{:?}", f64::from_bits(bits)),
+            ty if ty.is_signed() => return bits.cast_signed().fmt(f),
+            _ => return bits.fmt(f),
+        };
+        f.write_str(real.strip_suffix(".0").unwrap_or(&real))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,333 @@
+//! What each construct means: text to model.
+
+use rung::elementary::Elementary;
+use rung::ladder::*;
+
+use super::{parse, parse_well};
+
+/// The elements of the only branch of a rung with this body.
+fn elements(body: &str) -> Vec<ElementKind> {
+    let mut program = parse_well(&format!("rung\n{body}"));
+    let mut branches = program.rungs.remove(0).circuit.branches;
+    assert_eq!(branches.len(), 1, "{body}");
+    branches.remove(0).elements.into_iter().map(|element| element.kind).collect()
+}
+
+/// The only element of a rung.
+fn element(body: &str) -> ElementKind {
+    let mut elements = elements(body);
+    assert_eq!(elements.len(), 1, "{body}: {elements:?}");
+    elements.remove(0)
+}
+
+/// A contact or coil in short: its kind, what it starts at, and its steps.
+fn brief(kind: &ElementKind) -> String {
+    match kind {
+        ElementKind::Contact { kind, operand } => match &operand.kind {
+            ExpressionKind::Read(reference) => format!("{kind:?} {}", reference_brief(reference)),
+            ExpressionKind::Literal(Literal::Bool(value)) => format!("{kind:?} {value}"),
+            other => panic!("{other:?}"),
+        },
+        ElementKind::Coil { kind, target } => format!("({kind:?} {})", reference_brief(target)),
+        ElementKind::Block(call) => format!(
+            "block {}:{}/{}.{}",
+            call.instance.text,
+            call.type_name.as_ref().map_or("", |name| &name.text),
+            call.arguments.len(),
+            call.power_output.as_ref().map_or("", |name| &name.text)
+        ),
+        ElementKind::Condition(_) => "condition".to_owned(),
+        ElementKind::Assignment { target, .. } => format!("assign {}", reference_brief(target)),
+        ElementKind::Parallel(circuit) => {
+            let branches: Vec<String> =
+                circuit.branches.iter().map(|branch| briefs(branch.elements.iter().map(|e| &e.kind))).collect();
+            format!("[{}]", branches.join("|"))
+        }
+    }
+}
+
+fn briefs<'a>(kinds: impl Iterator<Item = &'a ElementKind>) -> String {
+    kinds.map(brief).collect::<Vec<_>>().join(", ")
+}
+
+fn reference_brief(reference: &Reference) -> String {
+    let mut text = match &reference.root {
+        Root::Name(name) => name.text.clone(),
+        Root::Address(address) => format!("{:?}{:?}{:?}", address.area, address.width, address.numbers),
+    };
+    for step in &reference.steps {
+        match step {
+            Step::Member(name) => text.push_str(&format!(".{}", name.text)),
+            Step::Bit(bit, _) => text.push_str(&format!("#{bit}")),
+        }
+    }
+    text
+}
+
+#[test]
+fn every_contact_coil_and_shape_of_element() {
+    let cases = [
+        ("a", "Open a"),
+        ("/a", "Closed a"),
+        ("^a", "Rising a"),
+        ("^/a", "Falling a"),
+        ("^ / a", "Falling a"),
+        ("TRUE /false", "Open true, Closed false"),
+        ("%IX0.3 /%q7 ^%MW2.5", "Open InputBit[0, 3], Closed OutputBit[7], Rising MemoryWord[2, 5]"),
+        ("w.3 delay.Q /w.31 a.b.2", "Open w#3, Open delay.Q, Closed w#31, Open a.b#2"),
+        ("`a b` größe", "Open a b, Open größe"),
+        ("(a)", "(Plain a)"),
+        ("(/a)", "(Negated a)"),
+        ("(S a) (R a) (P a) (N a)", "(Set a), (Reset a), (Rising a), (Falling a)"),
+        ("(s a) (r a) (p %QX1.0) (n w.3)", "(Set a), (Reset a), (Rising OutputBit[1, 0]), (Falling w#3)"),
+        (
+            "(s) (R) (p.3) (`S`) (S s) (%QW3)",
+            "(Plain s), (Plain R), (Plain p#3), (Plain S), (Set s), (Plain OutputWord[3])",
+        ),
+        ("[ a | b ]", "[Open a|Open b]"),
+        ("[ a | ] [ | ] []", "[Open a|], [|], []"),
+        ("[ [ a | b ] c | d (e) ]", "[[Open a|Open b], Open c|Open d, (Plain e)]"),
+        ("{a > 1} {x := 2} {(x) := 3}", "condition, assign x, assign x"),
+        ("t1()", "block t1:/0."),
+        ("t1(PT := T#1s)", "block t1:/1."),
+        ("t1:TON(PT := T#1s, ET => x).Q", "block t1:TON/2.Q"),
+        ("t1 : TON()", "block t1:TON/0."),
+        ("t1 (x)", "Open t1, (Plain x)"),
+        ("t1\n(x)", "Open t1, (Plain x)"),
+        ("t1.Q(x)", "Open t1.Q, (Plain x)"),
+        ("/t1(x)", "Closed t1, (Plain x)"),
+        ("c:CTU(R := [ a | b ], PV := 10 + n)", "block c:CTU/2."),
+    ];
+    for (body, expected) in cases {
+        assert_eq!(briefs(elements(body).iter()), expected, "{body}");
+    }
+}
+
+#[test]
+fn a_block_keeps_its_wires_in_order() {
+    let ElementKind::Block(call) = element("c:CTUD(R := [ a /b | c ], PV := 10, CV => w.3).QD") else { panic!() };
+    assert_eq!((call.instance.text.as_str(), call.type_name.unwrap().text.as_str()), ("c", "CTUD"));
+    assert_eq!(call.power_output.unwrap().text, "QD");
+    let [reset, preset, count] = call.arguments.try_into().unwrap();
+    assert_eq!([&reset.pin.text, &preset.pin.text, &count.pin.text], ["R", "PV", "CV"]);
+    let Wire::Circuit(circuit) = reset.wire else { panic!() };
+    assert_eq!(brief(&ElementKind::Parallel(circuit)), "[Open a, Closed b|Open c]");
+    let Wire::Value(Expression { kind: ExpressionKind::Literal(value), .. }) = preset.wire else { panic!() };
+    assert_eq!(value, Literal::Integer { value: 10, base: 10, ty: None });
+    let Wire::Output(target) = count.wire else { panic!() };
+    assert_eq!(reference_brief(&target), "w#3");
+}
+
+/// The literal in `{…}`.
+fn literal(text: &str) -> Literal {
+    match element(&format!("{{{text}}}")) {
+        ElementKind::Condition(Expression { kind: ExpressionKind::Literal(literal), .. }) => literal,
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+#[test]
+fn every_form_of_literal() {
+    let integer = |value, base, ty| Literal::Integer { value, base, ty };
+    let real = |value, ty| Literal::Real { value, ty };
+    let cases = [
+        ("12", integer(12, 10, None)),
+        ("1_000", integer(1000, 10, None)),
+        ("16#Ff", integer(255, 16, None)),
+        ("2#10_10", integer(10, 2, None)),
+        ("8#17", integer(15, 8, None)),
+        ("10#17", integer(17, 10, None)),
+        ("INT#5", integer(5, 10, Some(Elementary::Int))),
+        ("int#+5", integer(5, 10, Some(Elementary::Int))),
+        ("WORD#16#FF", integer(255, 16, Some(Elementary::Word))),
+        ("BOOL#1", integer(1, 10, Some(Elementary::Bool))),
+        ("340282366920938463463374607431768211455", integer(u128::MAX, 10, None)),
+        ("BOOL#False", Literal::Bool(false)),
+        ("true", Literal::Bool(true)),
+        ("1.5", real(1.5, None)),
+        ("1.0e-3", real(0.001, None)),
+        ("1.0E+3", real(1000.0, None)),
+        ("1_0.2_5", real(10.25, None)),
+        ("REAL#2.5", real(2.5, Some(Elementary::Real))),
+        ("LREAL#2", real(2.0, Some(Elementary::Lreal))),
+        ("T#1h2m3s4ms5us6ns", Literal::Time(3_723_004_005_006)),
+        ("TIME#1.5s", Literal::Time(1_500_000_000)),
+        ("t#-5s", Literal::Time(-5_000_000_000)),
+        ("T#1d", Literal::Time(86_400_000_000_000)),
+        ("T#1D_2H", Literal::Time(93_600_000_000_000)),
+        ("T#90m", Literal::Time(5_400_000_000_000)),
+        ("T#0.25us", Literal::Time(250)),
+        ("T#9223372036854775807ns", Literal::Time(i64::MAX)),
+        ("T#-9223372036854775808ns", Literal::Time(i64::MIN)),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(literal(text), expected, "{text}");
+    }
+}
+
+#[test]
+fn a_sign_behind_a_type_is_an_operator() {
+    let ElementKind::Condition(Expression { kind: ExpressionKind::Unary(UnaryOperator::Negate, operand), .. }) =
+        element("{INT#-5}")
+    else {
+        panic!()
+    };
+    let expected = Literal::Integer { value: 5, base: 10, ty: Some(Elementary::Int) };
+    assert_eq!(operand.kind, ExpressionKind::Literal(expected));
+}
+
+/// An expression with all its parentheses.
+fn grouped(expression: &Expression) -> String {
+    match &expression.kind {
+        ExpressionKind::Read(reference) => reference_brief(reference),
+        ExpressionKind::Unary(UnaryOperator::Not, operand) => format!("(NOT {})", grouped(operand)),
+        ExpressionKind::Unary(UnaryOperator::Negate, operand) => format!("(-{})", grouped(operand)),
+        ExpressionKind::Binary(operator, left, right) => {
+            format!("({} {} {})", grouped(left), operator.symbol(), grouped(right))
+        }
+        ExpressionKind::Literal(literal) => format!("{literal:?}"),
+    }
+}
+
+#[test]
+fn operators_bind_as_the_standard_says() {
+    let cases = [
+        ("a OR b XOR c AND d", "(a OR (b XOR (c AND d)))"),
+        ("a and b & c or d", "(((a AND b) AND c) OR d)"),
+        ("a AND b = c < d + e * f", "(a AND (b = (c < (d + (e * f)))))"),
+        ("a * b + c > d <> e AND f", "(((((a * b) + c) > d) <> e) AND f)"),
+        ("a - b - c + d", "(((a - b) - c) + d)"),
+        ("a / b MOD c * d", "(((a / b) MOD c) * d)"),
+        ("NOT a = b", "((NOT a) = b)"),
+        ("-a * -b", "((-a) * (-b))"),
+        ("a - -b", "(a - (-b))"),
+        ("NOT NOT -a", "(NOT (NOT (-a)))"),
+        ("(a OR b) AND (c OR d)", "((a OR b) AND (c OR d))"),
+        ("a <= b >= c", "((a <= b) >= c)"),
+    ];
+    for (text, expected) in cases {
+        let ElementKind::Condition(expression) = element(&format!("{{{text}}}")) else { panic!("{text}") };
+        assert_eq!(grouped(&expression), expected, "{text}");
+    }
+}
+
+#[test]
+fn declarations_take_their_clauses_in_any_order() {
+    let program = parse_well(
+        "program p\nINPUT a, b : BOOL\noutput c at %QX0.1\nvar t1 : TON retain\n\
+         var d retain := 5 : INT at %MW3\nconst e := T#5s\nvar at, retain : at at %I3",
+    );
+    let brief: Vec<String> = program
+        .variables
+        .iter()
+        .map(|variable| {
+            let type_name = variable.type_name.as_ref().map_or("", |name| &name.text);
+            let address = variable.address.as_ref().map(|address| &address.numbers);
+            let initial = variable.initial.as_ref().map_or(String::new(), grouped);
+            format!("{:?} {}:{type_name} {address:?} {initial} {}", variable.class, variable.name.text, variable.retain)
+        })
+        .collect();
+    assert_eq!(
+        brief,
+        [
+            "Input a:BOOL None  false",
+            "Input b:BOOL None  false",
+            "Output c: Some([0, 1])  false",
+            "Memory t1:TON None  true",
+            "Memory d:INT Some([3]) Integer { value: 5, base: 10, ty: None } true",
+            "Constant e: None Time(5000000000) false",
+            "Memory at:at Some([3])  false",
+            "Memory retain:at Some([3])  false",
+        ]
+    );
+}
+
+#[test]
+fn rungs_have_names_titles_and_states_or_not() {
+    let program = parse_well(
+        "rung r10 \"one $\"two$\" $$3$N\"\na\nrung \"t\" a\nrung r2\na\nrung\na (b)\nrung off r3 \"x\" a\nRUNG OFF\na\n\
+         rung\noff\nrung `off`\nrung /a (b)\nrung r9 -- comment\na",
+    );
+    let brief: Vec<_> = program
+        .rungs
+        .iter()
+        .map(|rung| {
+            (
+                rung.name.as_ref().map(|name| name.text.as_str()),
+                rung.title.as_deref(),
+                rung.enabled,
+                briefs(rung.circuit.branches[0].elements.iter().map(|element| &element.kind)),
+            )
+        })
+        .collect();
+    let open = || "Open a".to_owned();
+    assert_eq!(
+        brief,
+        [
+            (Some("r10"), Some("one \"two\" $3\n"), true, open()),
+            (None, Some("t"), true, open()),
+            (Some("r2"), None, true, open()),
+            (None, None, true, "Open a, (Plain b)".to_owned()),
+            (Some("r3"), Some("x"), false, open()),
+            (None, None, false, open()),
+            (None, None, true, "Open off".to_owned()),
+            (Some("off"), None, true, String::new()),
+            (None, None, true, "Closed a, (Plain b)".to_owned()),
+            (Some("r9"), None, true, open()),
+        ]
+    );
+}
+
+#[test]
+fn branches_start_and_end_at_nodes() {
+    let program = parse_well("rung\na >x> | >x> b >y> | - >x> | >x> >y> | >y> | c (d) | ");
+    let brief: Vec<_> = program.rungs[0]
+        .circuit
+        .branches
+        .iter()
+        .map(|branch| {
+            let node = |name: &Option<Name>| name.as_ref().map_or(String::new(), |name| name.text.clone());
+            (node(&branch.from), branch.elements.len(), node(&branch.to))
+        })
+        .collect();
+    let expected = [("", 1, "x"), ("x", 1, "y"), ("", 0, "x"), ("x", 0, "y"), ("y", 0, ""), ("", 2, ""), ("", 0, "")];
+    assert_eq!(brief, expected.map(|(from, elements, to)| (from.to_owned(), elements, to.to_owned())));
+}
+
+#[test]
+fn a_file_without_a_program_line_is_named_after_itself() {
+    let name = |file: &str| {
+        let parsed = rung::frontend::native::parse(&rung::source::Source::new(file, ""));
+        parsed.program.name.text
+    };
+    assert_eq!(name("plant/pump station.rung"), "pump station");
+    assert_eq!(name("x"), "x");
+    assert_eq!(name(""), "main");
+    assert_eq!(parse_well("program `my plant`").name.text, "my plant");
+}
+
+#[test]
+fn spans_cover_what_they_name() {
+    let text = "var t1 : TON  retain\n\nrung r1 \"x\"\n  /a [ b | t1(PT := T#1s).Q ] ({c)";
+    let text = &text.replace("({c)", "{c + (1)}");
+    let (program, _) = parse(text);
+    let slice = |span: rung::source::Span| &text[span.range()];
+    assert_eq!(slice(program.variables[0].span), "var t1 : TON  retain");
+    let rung = &program.rungs[0];
+    assert_eq!(slice(rung.span), &text[text.find("rung").unwrap()..]);
+    let elements = &rung.circuit.branches[0].elements;
+    assert_eq!(slice(elements[0].span), "/a");
+    assert_eq!(slice(elements[1].span), "[ b | t1(PT := T#1s).Q ]");
+    let ElementKind::Parallel(circuit) = &elements[1].kind else { panic!() };
+    assert_eq!(slice(circuit.span), slice(elements[1].span));
+    assert_eq!(slice(circuit.branches[1].span), "t1(PT := T#1s).Q");
+    let ElementKind::Condition(sum) = &elements[2].kind else { panic!() };
+    assert_eq!(slice(sum.span), "c + (1)");
+}
+
+#[test]
+fn comments_know_whether_they_stand_alone() {
+    let program = parse_well("--a\ninput x -- b \n  --\tc\r\n--- d");
+    let brief: Vec<_> = program.comments.iter().map(|comment| (comment.text.as_str(), comment.own_line)).collect();
+    assert_eq!(brief, [("a", true), ("b", false), ("c", true), ("- d", true)]);
+}
