@@ -1,5 +1,4 @@
 //! How long the passes and the compiler take, and how large the code is.
-#![expect(missing_docs, reason = "criterion makes public functions")]
 #![expect(clippy::print_stderr, reason = "sizes are reported beside the times")]
 
 #[path = "support/workload.rs"]
@@ -18,7 +17,7 @@ fn compiles(criterion: &mut Criterion) {
     group.sample_size(10);
     let target = host_isa().expect("a host with a back end").triple().clone();
     for rungs in [18, 1451, 20_000] {
-        let program = workload(rungs).program;
+        let program = workload(rungs);
         group.throughput(Throughput::Elements(rungs as u64));
         group.bench_function(format!("optimise/{rungs}"), |bencher| {
             bencher.iter_batched(|| program.clone(), opt::optimise, BatchSize::LargeInput);

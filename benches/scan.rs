@@ -1,5 +1,4 @@
 //! How long a scan takes, compiled and interpreted, with a tenth of the inputs changing between scans.
-#![expect(missing_docs, reason = "criterion's macros make public functions")]
 
 #[path = "support/workload.rs"]
 mod workload;
@@ -14,13 +13,14 @@ use rung::engine::interp::Interpreter;
 use rung::engine::jit::Jit;
 use rung::opt;
 use rung_runtime::Scan;
-use workload::{Workload, workload};
+use workload::workload;
 
 fn scans(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("scan");
     for rungs in [18, 1451, 20_000] {
-        let Workload { program, inputs } = workload(rungs);
-        let program = opt::optimise(program);
+        let program = opt::optimise(workload(rungs));
+        let bytes = &program.layout.inputs()[0].bytes;
+        let inputs = bytes.start as usize..bytes.end as usize;
         let jit = Jit::compile(&program).expect("code for this machine");
         group.throughput(Throughput::Elements(rungs as u64));
         let engines: [(&str, Box<dyn Scan>); 2] =

@@ -5,16 +5,8 @@ use rand_pcg::Pcg64;
 use rung::elementary::{Elementary, Value};
 use rung::logic::{Area, Binary, Builder, Compare, LayoutBuilder, Origin, Program, Slot, SlotId, ValueId};
 
-/// A program and the inputs that change from scan to scan.
-pub struct Workload {
-    /// The program, as lowering would make it.
-    pub program: Program,
-    /// Where in the image its inputs lie, a BOOL each.
-    pub inputs: std::ops::Range<usize>,
-}
-
 /// A program of so many rungs; contacts refer to inputs, coils and timers at random. One seed, one program.
-pub fn workload(rungs: usize) -> Workload {
+pub(crate) fn workload(rungs: usize) -> Program {
     let mut rng = Pcg64::seed_from_u64(rungs as u64);
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: String, ty, area| {
@@ -34,7 +26,6 @@ pub fn workload(rungs: usize) -> Workload {
     let contacts: Vec<SlotId> =
         inputs.iter().chain(&coils).copied().chain(timers.iter().map(|timer| timer.q)).collect();
     let layout = layout.finish(None).expect("a small image");
-    let input_bytes = layout.inputs()[0].bytes.clone();
     let mut logic = Builder::new(format!("{rungs}_rungs"), layout);
     for (rung, coil) in coils.iter().enumerate() {
         let mut power: Option<ValueId> = None;
@@ -54,8 +45,7 @@ pub fn workload(rungs: usize) -> Workload {
         logic.store(*coil, power);
         logic.end_section(Origin { label: format!("r{rung}"), line: 0 });
     }
-    let inputs = input_bytes.start as usize..input_bytes.end as usize;
-    Workload { program: logic.finish(), inputs }
+    logic.finish()
 }
 
 struct Timer {

@@ -16,7 +16,7 @@ mod lower;
 mod place;
 mod real;
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 
 use std::fmt;
 use std::ops::Range;
@@ -31,7 +31,9 @@ use target_lexicon::Architecture;
 
 use crate::logic::{Binary, Program};
 
-/// Pointers into the image that each chunk is given, so that most offsets from one of them are short.
+/// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
+/// they fill the six registers for arguments of x86-64; with eight of them code is 2 bytes a rung shorter, but has
+/// more instructions and runs no faster.
 pub const BASES: usize = 5;
 
 /// Why there is no code.

@@ -1,6 +1,6 @@
 //! The JIT: every chunk of a program compiled for this machine and called in order.
 //!
-//! Code generation is [`clif`](super::clif)'s; here it is installed and called, and nothing else.
+//! Code generation is [`clif`]'s; here it is installed and called, and nothing else.
 
 mod memory;
 #[cfg(test)]

@@ -3,10 +3,11 @@
 use rung_runtime::Scan;
 
 use super::{Jit, host_isa};
+use crate::elementary::{Elementary, Value};
 use crate::engine::clif::BRANCHING;
 use crate::engine::disassemble;
 use crate::engine::interp::Textbook;
-use crate::logic::{Op, Program, random};
+use crate::logic::{Area, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
 use crate::opt;
 
 fn compile(program: &Program) -> Jit {
@@ -114,4 +115,30 @@ fn a_program_without_sections_leaves_the_image_alone() {
 #[should_panic(expected = "shorter than the program's layout")]
 fn an_image_that_is_too_short_is_refused() {
     compile(&random::program(3)).scan(&mut [0; 3], 0);
+}
+
+#[test]
+fn a_rung_of_a_hundred_thousand_contacts_compiles_and_runs() {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str| {
+        let (ty, initial) = (Elementary::Bool, Value::bool(true));
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+    };
+    let (contact, coil) = (slot("contact"), slot("coil"));
+    let mut logic = Builder::new("long", layout.finish(None).expect("a small image"));
+    let mut power = logic.load(contact);
+    for _ in 0..100_000 {
+        // Inverted twice: neither code nor compiler may nest as deep as the rung is long.
+        let inverse = logic.not(power);
+        power = logic.not(inverse);
+        let value = logic.load(contact);
+        power = logic.and(power, value);
+    }
+    logic.store(coil, power);
+    logic.end_section(Origin { label: "r".into(), line: 1 });
+    let program = logic.finish();
+    let mut image = program.layout.initial_image();
+    program.layout.slot(coil).write(&mut image, Value::bool(false));
+    compile(&program).scan(&mut image, 0);
+    assert!(program.layout.slot(coil).read(&image).is_true());
 }
