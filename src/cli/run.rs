@@ -37,7 +37,8 @@ use points::Points;
 const WATCHDOG_CYCLES: i64 = 10;
 const LEAST_DEFAULT_WATCHDOG: i64 = 100_000_000;
 
-/// The longest tick and cycle, an hour.
+/// The shortest tick, 50 us: below, waking takes longer than the tick. The longest cycle is an hour.
+const SHORTEST_TICK: i64 = 50_000;
 const LONGEST_CYCLE: i64 = 3_600_000_000_000;
 
 /// Runs a program in real time on a simulated panel, until Ctrl-C
@@ -93,19 +94,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let told = if live { Vec::new() } else { points.told() };
     let machine = Machine::start(engine, &program.layout, &inputs, timing, &told, stop)
         .map_err(|error| Failure::new(Code::CannotStart, error.to_string()))?;
-    print(&format!("  {}\n", machine.scheduling))?;
-    let watched = if live {
-        view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
-    } else {
-        plain::watch(&machine, &told)
-    };
+    let watched = print(&format!("  {}\n", machine.scheduling)).and_then(|()| {
+        if live {
+            view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
+        } else {
+            plain::watch(&machine, &told)
+        }
+    });
 
     // Whoever watched may have gone, but the outputs are to be off before anything else.
     machine.shared.stop.store(true, Ordering::Relaxed);
     let shared = Arc::clone(&machine.shared);
     let outcome = machine.finish();
-    watched?;
-    print(&summary(&shared.statistics, timing.watchdog))?;
+    let watched = watched.and_then(|()| print(&summary(&shared.statistics, timing.watchdog)));
+    // A fault is told in any case, also where nobody reads the standard output any more.
     match outcome {
         Err(Lost::Hung) => {
             let limit = time::rounded(timing.watchdog);
@@ -113,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Stopped, message))
         }
         Err(Lost::Panicked) => Err(Failure::new(Code::Stopped, "the scan panicked; the outputs are off")),
-        Ok(outcome) => ended(outcome, arguments, &loaded, &program),
+        Ok(outcome) => ended(outcome, arguments, &loaded, &program).and(watched),
     }
 }
 
@@ -126,8 +128,9 @@ fn timing(arguments: &Arguments) -> Result<Timing, Failure> {
         return Err(bad(format!("the cycle, {cycle}, is no multiple of the tick, {tick}")));
     }
     let count = |number: i64| u32::try_from(number).ok().and_then(NonZeroU32::new);
-    let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), cycle <= LONGEST_CYCLE) else {
-        return Err(bad("a tick may have at most 4 s, a cycle an hour".to_owned()));
+    let within = tick >= SHORTEST_TICK && cycle <= LONGEST_CYCLE;
+    let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), within) else {
+        return Err(bad("a tick may have from 50us to 4s, a cycle up to an hour".to_owned()));
     };
     Ok(Timing {
         tick,
