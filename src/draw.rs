@@ -4,9 +4,9 @@
 //! grid of characters, and two renderers read what it made, so that both pictures show the same. Drawing is pure:
 //! it must do no I/O, and never panic, whatever the program holds.
 //!
-//! The way of a rung: [`network`] makes nested groups of sized [`symbol`]s, [`grid`] gives them cells and folds
-//! them to the width, [`place`] makes [`shape`]s of them; [`page`] puts the rungs below each other under the
-//! declarations.
+//! The way of a rung: `network` makes nested groups of sized `symbol`s, `grid` gives them cells and folds them to
+//! the width, `place` makes `shape`s of them; `page` puts the rungs below each other under the declarations, and
+//! `text` or `svg` renders the page.
 
 mod grid;
 mod label;
@@ -22,14 +22,16 @@ use crate::ladder::Program;
 
 /// The narrowest text picture, in columns; a smaller width counts as this.
 pub const MINIMUM_WIDTH: usize = 20;
-/// The columns of an SVG picture, each [`svg::COLUMN`] units wide: a landscape page at a readable size.
+/// The widest text picture, in columns; a greater width counts as this.
+pub const MAXIMUM_WIDTH: usize = 1000;
+/// The columns of an SVG picture: a landscape page at a readable size.
 const SVG_WIDTH: usize = 110;
 
 /// How to draw for a terminal.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct TextOptions {
-    /// The columns that a line may take, at least [`MINIMUM_WIDTH`]. Only a line with an element that is wider by
-    /// itself takes more.
+    /// The columns that a line may take, from [`MINIMUM_WIDTH`] to [`MAXIMUM_WIDTH`]. Only a rung with a block that is
+    /// wider by itself takes more, which none is from 40 columns on.
     pub width: usize,
 }
 
@@ -42,7 +44,7 @@ impl Default for TextOptions {
 
 /// Draws a program with box-drawing characters. Every line ends with a line feed and none with a blank.
 pub fn text(program: &Program, options: &TextOptions) -> String {
-    text::render(&page::Page::of(program, options.width.max(MINIMUM_WIDTH)))
+    text::render(&page::Page::of(program, options.width.clamp(MINIMUM_WIDTH, MAXIMUM_WIDTH)))
 }
 
 /// Draws a program as an SVG document. The same program always gives the same bytes.

@@ -17,8 +17,8 @@ impl Checker<'_> {
             Some(format!("declare the instance by its use, as in `{}:TON(PT := T#1s)`", call.instance.text))
         });
         let declared = instance.and_then(|id| self.instance_type(id, call, named.flatten()));
-        if let (Some(id), true) = (instance, walk.enabled) {
-            self.usage.calls.entry(id).or_default().push((span, walk.rung));
+        if let Some(id) = instance {
+            self.note_call(id, span, walk);
         }
         let Some(block) = declared.or(named.flatten()) else {
             self.arguments_of_unknown(call, walk);

@@ -15,8 +15,9 @@ use crate::ladder::{
 };
 use crate::source::Span;
 
-/// How deep circuits and expressions may nest, counted together.
-pub const MAXIMUM_DEPTH: usize = 256;
+/// How deep circuits and expressions may nest, counted together: more than the native text's limits on circuits and on
+/// expressions add up to.
+pub const MAXIMUM_DEPTH: usize = 300;
 
 /// What is nested too deeply.
 struct TooDeep(Span);

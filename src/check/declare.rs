@@ -43,7 +43,7 @@ impl Checker<'_> {
             self.check_instance(declared, block);
         } else if declared.retain && matches!(class, VariableClass::Input | VariableClass::Constant) {
             let message = format!("the {} `{}` cannot be retained", class_name(class), declared.name.text);
-            let problem = Diagnostic::new(Code::RetainedInput, declared.span, message);
+            let problem = Diagnostic::new(Code::RetainedInput, declared.name.span, message);
             self.report.push(problem.hint("only what the program writes is worth keeping; leave `retain` out"));
         }
         let elementary = match ty {
@@ -58,7 +58,7 @@ impl Checker<'_> {
             retain: declared.retain,
             address: declared.address.clone(),
             shares: None,
-            span: declared.span,
+            span: declared.name.span,
         };
         let state = match (ty, class) {
             (None, _) => State::Broken,
@@ -119,7 +119,7 @@ impl Checker<'_> {
         let instance = format!("an instance of {}", block.name());
         if declared.class != VariableClass::Memory {
             let message = format!("{} cannot be {instance}", types::with_article(class_name(declared.class)));
-            let problem = Diagnostic::new(Code::TypeMismatch, declared.span, message);
+            let problem = Diagnostic::new(Code::TypeMismatch, declared.name.span, message);
             self.report.push(problem.hint("declare it with `var`"));
         }
         if let Some(address) = &declared.address {
@@ -170,13 +170,8 @@ impl Checker<'_> {
         let ty = known.map(|id| self.scope.entry(id).variable.ty);
         match (&declared.initial, ty) {
             (Some(initial), Some(Type::Elementary(ty))) => {
-                let value = self.value(initial, ty).map(|value| (value.constant(), initial.span));
-                if let Some((None, span)) = value {
-                    let message = format!("the initial value of `{}` must be a constant", declared.name.text);
-                    let problem = Diagnostic::new(Code::NotConstant, span, message);
-                    self.report.push(problem.hint("write a literal, or name what `const` declares"));
-                }
-                self.settle(id, value.and_then(|(constant, _)| constant));
+                let value = self.initial_value(declared, initial, ty);
+                self.settle(id, value);
             }
             // Only for the names in it.
             (Some(initial), _) => {
@@ -184,12 +179,34 @@ impl Checker<'_> {
             }
             (None, Some(_)) if declared.class == VariableClass::Constant => {
                 let message = format!("the constant `{}` has no value", declared.name.text);
-                let problem = Diagnostic::new(Code::NotConstant, declared.span, message);
+                let problem = Diagnostic::new(Code::NotConstant, declared.name.span, message);
                 self.report.push(problem.hint("write one behind `:=`"));
                 self.settle(id, None);
             }
             (None, _) => {}
         }
+    }
+
+    fn initial_value(
+        &mut self,
+        declared: &ladder::Variable,
+        initial: &ladder::Expression,
+        ty: Elementary,
+    ) -> Option<Value> {
+        let (name, operand) = (&declared.name.text, self.operand(initial)?);
+        if let (None, Some(other)) = (&declared.type_name, operand.other_than_bool()) {
+            let message = format!("without a type `{name}` is a BOOL, and this is not");
+            let problem = Diagnostic::new(Code::TypeMismatch, initial.span, message);
+            self.report.push(problem.hint(format!("write its type, as in `{name} : {other}`")));
+            return None;
+        }
+        let value = self.coerce(operand, ty, initial.span)?.constant();
+        if value.is_none() {
+            let message = format!("the initial value of `{name}` must be a constant");
+            let problem = Diagnostic::new(Code::NotConstant, initial.span, message);
+            self.report.push(problem.hint("write a literal, or name what `const` declares"));
+        }
+        value
     }
 
     /// Notes a variable's written initial value; `None` if it has a fault that was reported.

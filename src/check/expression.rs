@@ -19,6 +19,18 @@ pub(super) enum Operand {
     Untyped(Untyped),
 }
 
+impl Operand {
+    /// The type that it most likely is meant to have, where a BOOL cannot be made of it.
+    pub(super) fn other_than_bool(&self) -> Option<Elementary> {
+        match self {
+            Self::Typed(expression) => Some(expression.ty).filter(|ty| *ty != Elementary::Bool),
+            Self::Untyped(Untyped::Real(_)) => Some(Elementary::Real),
+            Self::Untyped(number) => number.typed(Elementary::Bool).is_none().then_some(Elementary::Int),
+        }
+    }
+}
+
+/// A constant as an expression.
 pub(super) fn constant(value: Value) -> Expression {
     Expression { ty: value.ty(), kind: ExpressionKind::Constant(value) }
 }
@@ -94,7 +106,8 @@ impl Checker<'_> {
         value
     }
 
-    fn coerce(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expression> {
+    /// An operand as a value of a type.
+    pub(super) fn coerce(&mut self, operand: Operand, ty: Elementary, span: Span) -> Option<Expression> {
         match operand {
             Operand::Untyped(number) => self.number(number, ty, span).map(constant),
             Operand::Typed(expression) if expression.ty == ty => Some(expression),
@@ -242,15 +255,6 @@ impl Checker<'_> {
                 None
             }
         }
-    }
-
-    /// Whether what must be a BOOL is one; `why` says what it is to be one for.
-    pub(super) fn is_bool(&mut self, ty: Elementary, why: &str, span: Span) -> bool {
-        if ty != Elementary::Bool {
-            let message = format!("{why} a BOOL, and this is {}", types::with_article(ty.name()));
-            self.report.push(Diagnostic::new(Code::TypeMismatch, span, message));
-        }
-        ty == Elementary::Bool
     }
 
     fn not_taken(&mut self, op: &str, domain: &str, found: &str, span: Span) {

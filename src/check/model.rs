@@ -54,11 +54,11 @@ impl VariableId {
 pub struct Variable {
     /// Its name, as it was spelled first; an address that was used without a declaration is spelled canonically, as `%IX0.3`.
     pub name: String,
-    /// What it is declared as. An address without a declaration has the class of its area.
+    /// What it is declared as. An address without a declaration has the class of its area, and so has a `var` at one.
     pub class: VariableClass,
     /// Its type.
     pub ty: Type,
-    /// What it starts with. Of a block instance, which has no value of its own, it is FALSE.
+    /// What it starts with, the same for all that share storage. Of a block instance, which has no value of its own, it is FALSE.
     pub initial: Value,
     /// Whether it keeps its value, or a block all of its memory, while the power is off.
     pub retain: bool,
@@ -66,7 +66,7 @@ pub struct Variable {
     pub address: Option<Address>,
     /// The earlier variable at the same address and of the same width, whose storage this one shares.
     pub shares: Option<VariableId>,
-    /// Where it is declared, or first used.
+    /// Its name where it is declared, or first used.
     pub span: Span,
 }
 

@@ -6,12 +6,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Checker;
 use super::expression::constant;
-use super::model::{self, NodeId};
+use super::model::{self, NodeId, Place};
+use super::report::clipped;
+use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ContactKind, ElementKind, Name, Rung};
+use crate::ladder::{self, ContactKind, ElementKind, Name, Reference, Rung};
 use crate::source::Span;
 
 /// What is known of the power at a point.
@@ -127,7 +128,7 @@ impl Checker<'_> {
     /// A rung by its name or else its number, for messages.
     pub(super) fn rung_name(&self, index: usize) -> String {
         match self.program.rungs.get(index).and_then(|rung| rung.name.as_ref()) {
-            Some(name) => format!("rung {}", name.text),
+            Some(name) => format!("rung {}", clipped(&name.text)),
             None => format!("rung {}", index + 1),
         }
     }
@@ -139,8 +140,7 @@ impl Checker<'_> {
         left: Power,
         walk: &mut Walk,
     ) -> (model::Circuit, Power) {
-        let mut right = Power::Never(circuit.span);
-        let mut met_right = false;
+        let mut right: Option<Power> = None;
         let mut branches = Vec::with_capacity(circuit.branches.len());
         for branch in &circuit.branches {
             let (from, mut power) = match &branch.from {
@@ -155,12 +155,12 @@ impl Checker<'_> {
             }
             let to = branch.to.as_ref().map(|name| self.feed_node(name, power, walk));
             if to.is_none() {
-                right = if met_right { right.or(power) } else { power };
-                met_right = true;
+                right = Some(right.map_or(power, |others| others.or(power)));
             }
             branches.push(model::Branch { from, elements, to });
         }
-        (model::Circuit { branches }, right)
+        // Where every branch ends at a node there is no power on the right.
+        (model::Circuit { branches }, right.unwrap_or(Power::Never(circuit.span)))
     }
 
     /// The node that a branch starts at, and its power.
@@ -220,9 +220,7 @@ impl Checker<'_> {
             }
             ElementKind::Coil { kind, target } => {
                 walk.effect(left);
-                let written = self.write(target);
-                let target =
-                    written.and_then(|(place, ty)| self.is_bool(ty, "a coil writes", target.span).then_some(place));
+                let target = self.coil_target(target);
                 if let Some(target) = target {
                     self.note_coil(*kind, target, element.span, walk);
                 }
@@ -250,5 +248,16 @@ impl Checker<'_> {
                 (Some(model::Element::Parallel(circuit)), right)
             }
         }
+    }
+
+    /// Where a coil writes.
+    fn coil_target(&mut self, target: &Reference) -> Option<Place> {
+        let (place, ty) = self.write(target)?;
+        if ty != Elementary::Bool {
+            let message = format!("a coil writes a BOOL, and this is {}", types::with_article(ty.name()));
+            let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
+            self.report.push(problem.hint("write other types in braces, as in `{x := 1}`"));
+        }
+        (ty == Elementary::Bool).then_some(place)
     }
 }

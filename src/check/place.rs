@@ -3,6 +3,7 @@
 use super::address::Extent;
 use super::expression::constant as constant_expression;
 use super::model::{Expression, ExpressionKind, PinId, Place, Type, VariableId};
+use super::report::clipped;
 use super::scope::State;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
@@ -64,7 +65,7 @@ impl Checker<'_> {
     pub(super) fn write(&mut self, reference: &Reference) -> Option<(Place, Elementary)> {
         let (place, ty) = self.place(reference)?;
         let variable = &self.scope.entry(place.variable).variable;
-        let (name, declared, span) = (&variable.name, variable.span, reference.span);
+        let (name, declared, span) = (clipped(&variable.name), variable.span, reference.span);
         let problem = match (variable.class, place.pin) {
             (VariableClass::Constant, _) => Diagnostic::new(Code::NotWritable, span, format!("`{name}` is a constant"))
                 .related(declared, "declared here"),

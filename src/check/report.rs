@@ -1,10 +1,24 @@
 //! The diagnostics of one run, of which only so many are kept. It must never lose the fact that there was an error.
 
+use std::borrow::Cow;
+
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
 /// Errors that one run reports before it only counts the rest; as many warnings beside them.
 pub const MOST_REPORTED: usize = 1000;
+
+/// Characters of a name that are repeated in messages.
+const LONGEST_NAME: usize = 80;
+
+/// A name for a message that does not stand at that name itself: of one that would fill the screen only the start, since
+/// there may be many such messages.
+pub(super) fn clipped(name: &str) -> Cow<'_, str> {
+    match name.char_indices().nth(LONGEST_NAME) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &name[..end])),
+        None => Cow::Borrowed(name),
+    }
+}
 
 /// The diagnostics so far.
 #[derive(Default)]

@@ -4,6 +4,7 @@ mod addresses;
 mod build;
 mod limits;
 mod names;
+mod random;
 mod structure;
 mod values;
 

@@ -1,11 +1,11 @@
 //! What only the whole program shows: names that nothing uses, coils that overwrite each other, instances that are
-//! called twice. Rungs that do not run count for the first only.
-
-use std::collections::HashMap;
+//! called twice. Rungs that do not run count for the first only. It must never depend on the order of a hash map, so
+//! that of too many findings the same ones are kept in every run.
 
 use super::Checker;
 use super::model::{Place, VariableId};
 use super::network::Walk;
+use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{CoilKind, VariableClass};
 use crate::source::Span;
@@ -13,13 +13,18 @@ use crate::source::Span;
 /// Other places that one diagnostic names at most.
 const MOST_RELATED: usize = 8;
 
-/// What the rungs do, so far.
+/// What the rungs that run do, in their order.
 #[derive(Default)]
 pub(super) struct Usage {
-    /// The coils of each place, by the variable that has the storage.
-    coils: HashMap<Place, Vec<Coil>>,
-    /// The calls of each instance, and their rungs.
-    pub(super) calls: HashMap<VariableId, Vec<(Span, usize)>>,
+    /// The coils, each with its place by the variable that has the storage.
+    coils: Vec<(Place, Coil)>,
+    /// The calls.
+    calls: Vec<(VariableId, Call)>,
+}
+
+struct Call {
+    span: Span,
+    rung: usize,
 }
 
 struct Coil {
@@ -36,52 +41,58 @@ impl Checker<'_> {
             let latches = matches!(kind, CoilKind::Set | CoilKind::Reset);
             let coil = Coil { variable: target.variable, span, rung: walk.rung, latches };
             let place = Place { variable: self.scope.storage(target.variable), ..target };
-            self.usage.coils.entry(place).or_default().push(coil);
+            self.usage.coils.push((place, coil));
+        }
+    }
+
+    pub(super) fn note_call(&mut self, instance: VariableId, span: Span, walk: &Walk) {
+        if walk.enabled {
+            self.usage.calls.push((instance, Call { span, rung: walk.rung }));
         }
     }
 
     /// Reports what the whole program shows; unused names only if all of it could be seen.
     pub(super) fn check_usage(&mut self, complete: bool) {
-        let usage = std::mem::take(&mut self.usage);
-        // In an order that does not depend on hashing: of too many findings the same ones are kept in every run.
-        let mut places: Vec<_> = usage.coils.iter().filter(|(_, coils)| coils.len() > 1).collect();
-        places.sort_by_key(|(place, _)| (place.variable, place.pin, place.bit));
-        for (_, coils) in places {
-            self.check_coils(coils);
+        let Usage { mut coils, mut calls } = std::mem::take(&mut self.usage);
+        // Both sorts keep the order of the rungs among equals.
+        coils.sort_by_key(|(place, _)| (place.variable, place.pin, place.bit));
+        for group in coils.chunk_by(|(a, _), (b, _)| a == b) {
+            self.check_coils(group);
         }
-        let mut instances: Vec<_> = usage.calls.iter().filter(|(_, calls)| calls.len() > 1).collect();
-        instances.sort_by_key(|(id, _)| **id);
-        for (id, calls) in instances {
-            self.check_calls(*id, calls);
+        calls.sort_by_key(|(instance, _)| *instance);
+        for group in calls.chunk_by(|(a, _), (b, _)| a == b) {
+            self.check_calls(group);
         }
         if complete {
             self.check_unused();
         }
     }
 
-    fn check_coils(&mut self, coils: &[Coil]) {
-        let [first, .., last] = coils else { return };
-        if coils.iter().all(|coil| coil.latches) {
+    /// The coils of one place.
+    fn check_coils(&mut self, coils: &[(Place, Coil)]) {
+        let [earlier @ .., (_, last)] = coils else { return };
+        let Some((_, first)) = earlier.first() else { return };
+        if coils.iter().all(|(_, coil)| coil.latches) {
             return;
         }
-        let name = |coil: &Coil| &self.scope.entry(coil.variable).variable.name;
-        let rungs = self.both(first.rung, last.rung);
-        let mut problem =
-            Diagnostic::new(Code::DoubleCoil, last.span, format!("`{}` is written by coils in {rungs}", name(last)))
-                .hint("the last one decides; join the circuits in one rung, or use only set and reset coils");
-        for coil in coils[..coils.len() - 1].iter().take(MOST_RELATED) {
-            problem = problem
-                .related(coil.span, format!("`{}` is written here, in {}", name(coil), self.rung_name(coil.rung)));
+        let name = |coil: &Coil| clipped(&self.scope.entry(coil.variable).variable.name);
+        let message = format!("`{}` is written by coils in {}", name(last), self.both(first.rung, last.rung));
+        let mut problem = Diagnostic::new(Code::DoubleCoil, last.span, message)
+            .hint("the last one decides; join the circuits in one rung, or use only set and reset coils");
+        for (_, coil) in earlier.iter().take(MOST_RELATED) {
+            let note = format!("`{}` is written here, in {}", name(coil), self.rung_name(coil.rung));
+            problem = problem.related(coil.span, note);
         }
         self.report.push(problem);
     }
 
-    fn check_calls(&mut self, id: VariableId, calls: &[(Span, usize)]) {
-        let [(first, first_rung), .., (last, last_rung)] = calls else { return };
-        let name = &self.scope.entry(id).variable.name;
-        let message = format!("`{name}` is called in {}", self.both(*first_rung, *last_rung));
-        let problem = Diagnostic::new(Code::RepeatedBlock, *last, message)
-            .related(*first, "called first here")
+    /// The calls of one instance.
+    fn check_calls(&mut self, calls: &[(VariableId, Call)]) {
+        let [(id, first), .., (_, last)] = calls else { return };
+        let name = &self.scope.entry(*id).variable.name;
+        let message = format!("`{name}` is called in {}", self.both(first.rung, last.rung));
+        let problem = Diagnostic::new(Code::RepeatedBlock, last.span, message)
+            .related(first.span, "called first here")
             .hint("an instance has one memory, and each call changes it; give each call its own");
         self.report.push(problem);
     }

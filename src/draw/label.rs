@@ -439,7 +439,7 @@ mod tests {
         for _ in 0..150 {
             long = binary(BinaryOperator::Add, long, read("b"));
         }
-        assert_eq!(expression(&long, 9), "a + b + …");
+        assert_eq!(expression(&long, 9), "a + b +…");
         for _ in 0..100_000 {
             long = unary(UnaryOperator::Negate, long);
         }

@@ -8,7 +8,7 @@ use super::shape::{Align, Picture, Role, Shape};
 use super::symbol::{BlockBox, FRAME, Symbol, SymbolKind};
 
 /// A picture may take this many characters, and more in proportion to its symbols.
-const AREA: usize = 4_000_000;
+const AREA: usize = 500_000;
 /// Characters of the picture that each symbol allows beyond [`AREA`].
 const AREA_OF_SYMBOL: usize = 1000;
 
@@ -22,6 +22,7 @@ pub(super) fn picture(mut grids: Vec<Grid>, columns: usize) -> Option<Picture> {
     let mut area_left = AREA.saturating_add(symbols.saturating_mul(AREA_OF_SYMBOL));
     for grid in &mut grids {
         grid.stretch(rail);
+        // Counted before they are made.
         let pieces = grid.wires.iter().map(|wire| grid.strip_at(wire.to) - grid.strip_at(wire.from) + 1);
         area_left = area_left.checked_sub(pieces.sum())?;
         let strips = Strips::of(grid, placer.rows);

@@ -8,7 +8,7 @@ use super::page::{Page, RungPicture};
 use super::shape::{Align, Picture, Role, Shape};
 
 /// Units that one column is wide.
-pub(super) const COLUMN: usize = 9;
+const COLUMN: usize = 9;
 /// Units that one row is high.
 const ROW: usize = 20;
 /// Units around everything.
@@ -70,7 +70,9 @@ impl Sheet {
 
     /// A line of text across the page.
     fn line(&mut self, class: &str, text: &str) {
-        self.columns = self.columns.max(label::width(text) * if class == "program" { 3 } else { 2 } / 2);
+        // The program's name has letters up to half as wide again.
+        let columns = label::width(text);
+        self.columns = self.columns.max(if class == "program" { columns + columns / 2 } else { columns });
         let y = row_middle(0) + BASELINE + units(self.y);
         self.add(words(class, units(MARGIN), y, "start", text));
         self.y += ROW;

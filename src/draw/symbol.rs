@@ -17,10 +17,10 @@ const LEAST_COLUMNS: usize = 7;
 /// How wide texts may be, in columns.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    /// A name above a contact, a coil or a block.
+    /// A name above a contact or a coil.
     pub(super) name: usize,
-    /// The type of a block.
-    pub(super) type_name: usize,
+    /// The instance or the type of a block.
+    pub(super) block: usize,
     /// An expression in a box.
     pub(super) expression: usize,
     /// What is written beside a pin.
@@ -30,14 +30,17 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Limits that keep most elements within a column of that width.
+    /// Limits that keep every element within a cell of that width, and a block within one of at least 32 columns.
     pub(super) fn within(columns: usize) -> Self {
+        let pin_name = (columns / 6).clamp(4, 16);
+        // The names of two pins, what is wired to them, and all that is between.
+        let pin = (columns.saturating_sub(2 * pin_name + 9) / 2).clamp(6, 28);
         Self {
             name: columns.saturating_sub(2).clamp(4, 36),
-            type_name: (columns / 3).clamp(6, 24),
+            block: 2 * pin_name,
             expression: columns.saturating_sub(6).clamp(4, 60),
-            pin: (columns.saturating_sub(16) / 2).clamp(6, 28),
-            pin_name: (columns / 5).clamp(4, 16),
+            pin,
+            pin_name,
         }
     }
 }
@@ -153,8 +156,8 @@ impl Symbol {
         let type_name =
             call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| types.type_of(&call.instance.text));
         let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
-        let instance = label::cut_name(&call.instance.text, limits.name);
-        let type_name = label::cut_name(type_name.unwrap_or("?"), limits.type_name);
+        let instance = label::cut_name(&call.instance.text, limits.block);
+        let type_name = label::cut_name(type_name.unwrap_or("?"), limits.block);
 
         let widest = |pins: &[PinLabel], text: fn(&PinLabel) -> &str| {
             pins.iter().map(|pin| label::width(text(pin))).max().unwrap_or(0)

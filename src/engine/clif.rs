@@ -21,11 +21,11 @@ pub(crate) mod tests;
 use std::fmt;
 use std::ops::Range;
 
-use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::{AbiParam, Function, Signature, UserFuncName, types};
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable, SetError};
+use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_frontend::FunctionBuilderContext;
 use target_lexicon::Architecture;
 
@@ -158,10 +158,7 @@ impl<'a> Compiler<'a> {
     pub fn chunk(&mut self, sections: Range<usize>) -> Result<Chunk, CompileError> {
         let bases = self.build(sections.clone());
         let refused = |reason: String| CompileError::Chunk { sections: sections.clone(), reason };
-        let compiled = self
-            .context
-            .compile(self.isa, &mut ControlPlane::default())
-            .map_err(|error| refused(error.inner.to_string()))?;
+        let compiled = generate(&mut self.context, self.isa).map_err(|error| refused(error.to_string()))?;
         if !compiled.buffer.relocs().is_empty() {
             return Err(refused("the code refers to something outside of itself".to_owned()));
         }
@@ -185,6 +182,18 @@ impl<'a> Compiler<'a> {
         self.context.func = Function::with_name_signature(name, signature(self.isa));
         lower::chunk(self.program, sections, self.isa, &mut self.context.func, &mut self.builder_context)
     }
+}
+
+/// What [`Context::compile`] does without optimisation, but that block parameters with one source stay: see
+/// `Lowering::settled`.
+fn generate(context: &mut Context, isa: &dyn TargetIsa) -> CodegenResult<CompiledCode> {
+    context.verify_if(isa)?;
+    context.compute_cfg();
+    context.compute_domtree();
+    context.func.dfg.resolve_all_aliases();
+    let Context { func, domtree, .. } = context;
+    let stencil = isa.compile_function(func, domtree, &mut Default::default(), false, &mut ControlPlane::default())?;
+    Ok(stencil.apply_params(&func.params))
 }
 
 /// What every chunk's function takes.

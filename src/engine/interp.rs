@@ -2,8 +2,8 @@
 //!
 //! The fast one translates a program once into a compact stream and then only walks it. Everything lies in one array
 //! of bytes, its **cells**: the image, the time, the constants and the values between. Whatever is boolean becomes
-//! [gates](gate), of which a whole run executes without a branch; loads, stores, constants and negations cost nothing of
-//! their own. All else becomes [steps](step) with cells as operands. Neither may know any block.
+//! gates, of which a whole run executes without a branch; loads, stores, constants and negations cost nothing of
+//! their own. All else becomes steps with cells as operands. Neither may know any block.
 
 mod gate;
 mod step;
@@ -17,7 +17,7 @@ use rung_runtime::Scan;
 
 pub use textbook::Textbook;
 
-use crate::logic::Program;
+use crate::logic::{Program, verify};
 use gate::Gate;
 use step::Step;
 
@@ -34,6 +34,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// Translates a verified program.
     pub fn new(program: &Program) -> Self {
+        debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
         translate::translate(program)
     }
 

@@ -159,3 +159,12 @@ fn impossible_options_are_refused() {
     assert_eq!(with(|options| options.rungs = u32::MAX), OptionsError::TooLarge { contacts: most * 6 });
     assert_eq!(with(|options| options.contacts_per_rung = u32::MAX), OptionsError::TooLarge { contacts: most * 100 });
 }
+
+#[test]
+fn checking_finds_nothing_to_say() {
+    for seed in 0..20 {
+        let program = generate(&Options { rungs: 300, timers: 50, seed, ..Options::default() }).unwrap();
+        let (checked, diagnostics) = crate::check::check(&program);
+        assert_eq!((checked.is_some(), diagnostics), (true, Vec::new()), "seed {seed}");
+    }
+}

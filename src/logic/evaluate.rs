@@ -140,7 +140,7 @@ pub fn convert(from: Elementary, to: Elementary, a: u64) -> u64 {
 
 fn integer_of(to: Elementary, rounded: f64) -> u64 {
     // `as` holds at the ends of the range and makes NaN 0.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is wanted")]
+    #[expect(clippy::cast_possible_truncation, reason = "saturation is wanted")]
     let (wide, (least, greatest)) = (rounded as i128, to.range().unwrap_or((0, 0)));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 64 bits after the clamp")]
     let bits = wide.clamp(least, greatest) as u64;

@@ -228,14 +228,16 @@ impl Slot {
 /// # Panics
 /// When it lies outside the image.
 pub fn read(image: &[u8], offset: u32, ty: Elementary) -> Value {
-    let bytes = &image[offset as usize..][..ty.size() as usize];
-    let mut wide = [0; 8];
-    let bits = if cfg!(target_endian = "little") {
-        wide[..bytes.len()].copy_from_slice(bytes);
-        u64::from_le_bytes(wide)
-    } else {
-        wide[8 - bytes.len()..].copy_from_slice(bytes);
-        u64::from_be_bytes(wide)
+    fn bytes<const N: usize>(image: &[u8], offset: u32) -> [u8; N] {
+        let (mut bytes, at) = ([0; N], offset as usize);
+        bytes.copy_from_slice(&image[at..at + N]);
+        bytes
+    }
+    let bits = match ty.size() {
+        1 => u64::from(image[offset as usize]),
+        2 => u64::from(u16::from_ne_bytes(bytes(image, offset))),
+        4 => u64::from(u32::from_ne_bytes(bytes(image, offset))),
+        _ => u64::from_ne_bytes(bytes(image, offset)),
     };
     if ty == Elementary::Bool { Value::bool(bits != 0) } else { Value::from_bits(ty, bits) }
 }
@@ -245,12 +247,14 @@ pub fn read(image: &[u8], offset: u32, ty: Elementary) -> Value {
 /// # Panics
 /// When it does not fit into the image.
 pub fn write(image: &mut [u8], offset: u32, value: Value) {
-    let size = value.ty().size() as usize;
-    let bytes = &mut image[offset as usize..][..size];
-    if cfg!(target_endian = "little") {
-        bytes.copy_from_slice(&value.bits().to_le_bytes()[..size]);
-    } else {
-        bytes.copy_from_slice(&value.bits().to_be_bytes()[8 - size..]);
+    let mut put = |bytes: &[u8]| image[offset as usize..][..bytes.len()].copy_from_slice(bytes);
+    let bits = value.bits();
+    #[expect(clippy::cast_possible_truncation, reason = "the low bits are the value")]
+    match value.ty().size() {
+        1 => put(&[bits as u8]),
+        2 => put(&(bits as u16).to_ne_bytes()),
+        4 => put(&(bits as u32).to_ne_bytes()),
+        _ => put(&bits.to_ne_bytes()),
     }
 }
 

@@ -119,8 +119,8 @@ impl Lowering<'_> {
             wire(self, input.pin, value);
         }
         let inputs = wired.iter().zip(&slots.inputs).map(|(wired, slot)| match (wired, slot) {
-            (Some(value), _) => *value,
-            (None, Some(slot)) => self.logic.load(*slot),
+            (_, Some(slot)) => self.logic.load(*slot),
+            (Some(value), None) => *value,
             (None, None) => unreachable!("an input that a call leaves unwired has a slot"),
         });
         let inputs = inputs.collect();

@@ -1,7 +1,7 @@
 //! A slot for everything that a scan leaves behind: variables, pins, what blocks and edges remember.
 //!
-//! An input pin has a slot only if someone can tell: because a call leaves it unwired, so that it keeps its value, or
-//! because a rung reads or writes it as a member. Names of slots must depend on nothing but the names in the
+//! An input pin has a slot only if someone can tell: because a call leaves it unwired, so that it keeps its value,
+//! because the instance is called more than once, or because a rung reads or writes the pin as a member. Names of slots must depend on nothing but the names in the
 //! program and the place within a rung, so that an edit elsewhere moves no slot.
 
 use std::collections::HashSet;
@@ -166,6 +166,8 @@ impl Allocator {
 struct Used {
     /// For each variable, for each of its input pins, whether it needs a slot.
     kept_inputs: Vec<Vec<bool>>,
+    /// For each variable, whether a call of it was found.
+    called: Vec<bool>,
     /// For each rung, how many edge contacts and edge coils it has.
     edges: Vec<usize>,
 }
@@ -176,7 +178,11 @@ impl Used {
             Type::Block(block) => vec![false; block.inputs().len()],
             Type::Elementary(_) => Vec::new(),
         };
-        let mut used = Self { kept_inputs: checked.variables().iter().map(pins).collect(), edges: Vec::new() };
+        let mut used = Self {
+            kept_inputs: checked.variables().iter().map(pins).collect(),
+            called: vec![false; checked.variables().len()],
+            edges: Vec::new(),
+        };
         for rung in checked.rungs() {
             used.edges.push(0);
             used.circuit(&rung.circuit);
@@ -213,9 +219,11 @@ impl Used {
     }
 
     fn call(&mut self, call: &Call) {
+        // A call may stand in a circuit at another call's pin, of the same instance even.
+        let called_before = std::mem::replace(&mut self.called[call.instance.index()], true);
         for (pin, kept) in self.kept_inputs[call.instance.index()].iter_mut().enumerate() {
             let wired = call.power_input == Some(pin) || call.inputs.iter().any(|input| input.pin == pin);
-            *kept |= !wired;
+            *kept |= called_before || !wired;
         }
         for input in &call.inputs {
             match &input.wire {

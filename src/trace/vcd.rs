@@ -110,13 +110,18 @@ fn change<W: Write>(out: &mut Writer<W>, id: IdCode, value: Value) -> io::Result
     let ty = value.ty();
     match (ty, value.as_real()) {
         (Elementary::Bool, _) => out.change_scalar(id, Bit::from(value.is_true())),
-        (Elementary::Time, _) => out.change_real(id, milliseconds(value.bits().cast_signed())),
-        (_, Some(real)) => out.change_real(id, real),
+        (Elementary::Time, _) => change_real(out, id, milliseconds(value.bits().cast_signed())),
+        (_, Some(real)) => change_real(out, id, real),
         (_, None) => {
             let bit = |place: u32| Bit::from(value.bits() >> place & 1 == 1);
             out.change_vector(id, (0..ty.bits()).rev().map(bit))
         }
     }
+}
+
+/// Like [`Writer::change_real`], but with an exponent where it makes the number shorter: readers refuse long words.
+fn change_real<W: Write>(out: &mut Writer<W>, id: IdCode, real: f64) -> io::Result<()> {
+    writeln!(out.writer(), "r{real:?} {id}")
 }
 
 /// The nearest number of milliseconds.

@@ -272,14 +272,13 @@ fn a_large_file_without_any_sense_gives_few_diagnostics() {
 
 #[test]
 fn marks_breaks_and_nuls_of_other_systems() {
-    let decode = |bytes: &[u8]| Source::decode("x.rung", bytes);
     let crlf = EXAMPLE.replace('\n', "\r\n");
-    let marked = decode(format!("\u{feff}{crlf}").as_bytes()).unwrap();
+    let marked = Source::decode("x.rung", format!("\u{feff}{crlf}").as_bytes()).unwrap();
     let parsed = native::parse(&marked);
     assert_eq!(parsed.diagnostics, []);
     assert_eq!(native::print(&parsed.program), native::print(&parse_well(EXAMPLE)));
 
-    let (kept, problem) = decode(b"input a\n\0input b").unwrap_err();
+    let (kept, problem) = Source::decode("x.rung", b"input a\n\0input b").unwrap_err();
     assert_eq!(problem.code, Code::NotText);
     assert_eq!(native::parse(&kept).program.variables.len(), 1);
     let (_, diagnostics) = parse("input a\n\0");

@@ -45,6 +45,7 @@ fn without_spans(program: &Program) -> String {
 /// Prints a program, and checks that the text gives the same program and prints as itself.
 fn print_and_check(program: &Program) -> String {
     let text = native::print(program);
+    assert!(text.lines().all(|line| !line.ends_with(' ')), "blanks at the end of a line in\n{text}");
     let again = parse_well(&text);
     assert_eq!(without_spans(program), without_spans(&again), "printed as\n{text}");
     assert_eq!(native::print(&again), text);

@@ -33,7 +33,7 @@ fn faults_of_addresses_point_at_the_address() {
         (
             two(memory("a", "INT").at("%MW2").starting(int(1)), memory("b", "INT").at("%MW2").starting(int(2))),
             Code::AddressConflict,
-            "declaration of b",
+            "b",
         ),
         (program(vec![output("q")], vec![rung(vec![open("%IX0.8"), coil("q")])]), Code::OutOfRange, "%IX0.8"),
         (
@@ -41,8 +41,8 @@ fn faults_of_addresses_point_at_the_address() {
             Code::AddressConflict,
             "%QX0.1",
         ),
-        (using(vec![input("a").retained()]), Code::RetainedInput, "declaration of a"),
-        (using(vec![memory("a", "BOOL").at("%IX0.0").retained()]), Code::RetainedInput, "declaration of a"),
+        (using(vec![input("a").retained()]), Code::RetainedInput, "a"),
+        (using(vec![memory("a", "BOOL").at("%IX0.0").retained()]), Code::RetainedInput, "a"),
     ]);
 }
 

@@ -74,6 +74,13 @@ fn errors_and_warnings_past_the_limit_are_counted() {
 }
 
 #[test]
+fn a_long_name_is_not_repeated_in_full_where_it_is_not_written() {
+    let long = "n".repeat(1_000_000);
+    let found = only(&program(vec![input(&long).at("%IX0.0")], vec![rung(vec![coil("%IX0.0")])]));
+    assert_eq!(found.message, format!("`{}…` is an input", "n".repeat(80)));
+}
+
+#[test]
 fn an_empty_program_runs() {
     let checked = clean(&program(vec![], vec![]));
     assert_eq!((checked.name(), checked.variables().len(), checked.rungs().len()), ("test", 0, 0));

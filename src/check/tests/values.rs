@@ -151,7 +151,7 @@ fn what_has_another_type_is_a_mismatch() {
         (
             program(vec![input("t").typed("TON"), output("q")], vec![rung(vec![open("t.Q"), coil("q")])]),
             Code::TypeMismatch,
-            "declaration of t",
+            "t",
         ),
         (
             program(vec![memory("t", "TON").starting(int(1)), output("q")], vec![rung(vec![open("t.Q"), coil("q")])]),
@@ -174,6 +174,16 @@ fn initial_values_are_constants_of_constants_before_them() {
 }
 
 #[test]
+fn a_value_that_tells_a_missing_type_says_so() {
+    for (value, ty) in [(seconds(5), "TIME"), (int(5), "INT"), (real(0.5), "REAL")] {
+        let untyped = Variable { type_name: None, ..constant("_c", "BOOL", value) };
+        let found = only(&program(vec![untyped], vec![]));
+        assert_eq!((found.code, found.hint), (Code::TypeMismatch, Some(format!("write its type, as in `_c : {ty}`"))));
+    }
+    clean(&program(vec![input("_i"), output("_q").starting(int(1)), output("_r").starting(truth(true))], vec![]));
+}
+
+#[test]
 fn initial_values_that_are_not_known_at_the_start_are_refused() {
     let assign_x = || vec![rung(vec![assign("x", int(0)), assign("y", int(0))])];
     let refused = |x: Variable, y: Variable| program(vec![x, y], assign_x());
@@ -188,7 +198,7 @@ fn initial_values_that_are_not_known_at_the_start_are_refused() {
     table(vec![
         (program(later, uses("a")), Code::NotConstant, "b"),
         (program(itself, uses("a")), Code::NotConstant, "a"),
-        (program(vec![none, memory("x", "INT")], uses("a")), Code::NotConstant, "declaration of a"),
+        (program(vec![none, memory("x", "INT")], uses("a")), Code::NotConstant, "a"),
     ]);
 }
 

@@ -132,26 +132,34 @@ impl Step {
     }
 
     fn put<const N: usize>(&self, cells: &mut [u8], bytes: [u8; N]) {
-        cells[self.target as usize..][..N].copy_from_slice(&bytes);
+        let at = self.target as usize;
+        cells[at..at + N].copy_from_slice(&bytes);
     }
 }
 
+#[inline(always)]
 fn get<const N: usize>(cells: &[u8], cell: u32) -> [u8; N] {
-    let mut bytes = [0; N];
-    bytes.copy_from_slice(&cells[cell as usize..][..N]);
+    let (mut bytes, at) = ([0; N], cell as usize);
+    bytes.copy_from_slice(&cells[at..at + N]);
     bytes
 }
 
+#[inline(always)]
 fn signed(cells: &[u8], cell: u32) -> i64 {
     i64::from_ne_bytes(get(cells, cell))
 }
 
 /// `a` or `b` as a BOOL cell says, without a branch.
+#[inline(always)]
 fn select<const N: usize>(cells: &[u8], condition: u32, a: u32, b: u32) -> [u8; N] {
-    let mask = 0u8.wrapping_sub(cells[condition as usize]);
-    let (a, mut b) = (get::<N>(cells, a), get::<N>(cells, b));
-    for (b, a) in b.iter_mut().zip(a) {
-        *b ^= (*b ^ a) & mask;
-    }
-    b
+    let wide = |cell| {
+        let mut bytes = [0; 8];
+        bytes[..N].copy_from_slice(&get::<N>(cells, cell));
+        u64::from_ne_bytes(bytes)
+    };
+    let mask = 0u64.wrapping_sub(u64::from(cells[condition as usize]));
+    let chosen = (wide(a) & mask | wide(b) & !mask).to_ne_bytes();
+    let mut bytes = [0; N];
+    bytes.copy_from_slice(&chosen[..N]);
+    bytes
 }

@@ -5,13 +5,16 @@
 
 use rung_runtime::Scan;
 
-use crate::elementary::Value;
-use crate::logic::{Op, Program, ValueId, evaluate};
+use crate::elementary::{Elementary, Value};
+use crate::logic::image::{read, write};
+use crate::logic::{Instruction, Op, Program, ValueId, evaluate, verify};
 
 /// A program, interpreted instruction by instruction.
 #[derive(Clone, Debug)]
 pub struct Textbook {
-    program: Program,
+    instructions: Vec<Instruction>,
+    /// Offset and type of each slot.
+    slots: Vec<(u32, Elementary)>,
     /// The result of each instruction, in register form.
     values: Vec<u64>,
 }
@@ -19,22 +22,31 @@ pub struct Textbook {
 impl Textbook {
     /// Makes ready to interpret a verified program.
     pub fn new(program: &Program) -> Self {
-        Self { program: program.clone(), values: vec![0; program.instructions.len()] }
+        debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
+        Self {
+            instructions: program.instructions.clone(),
+            slots: program.layout.slots().iter().map(|slot| (slot.offset, slot.ty)).collect(),
+            values: vec![0; program.instructions.len()],
+        }
     }
 }
 
 impl Scan for Textbook {
     fn scan(&mut self, image: &mut [u8], now: i64) {
-        let Self { program, values } = self;
-        for (index, instruction) in program.instructions.iter().enumerate() {
+        let Self { instructions, slots, values } = self;
+        for (index, instruction) in instructions.iter().enumerate() {
             let (ty, of) = (instruction.ty, |value: ValueId| values[value.index()]);
-            let ty_of = |value: ValueId| program.instructions[value.index()].ty;
+            let ty_of = |value: ValueId| instructions[value.index()].ty;
             values[index] = match instruction.op {
                 Op::Constant(bits) => bits,
                 Op::Now => now.cast_unsigned(),
-                Op::Load(slot) => program.layout.slot(slot).read(image).bits(),
+                Op::Load(slot) => {
+                    let (offset, ty) = slots[slot.index()];
+                    read(image, offset, ty).bits()
+                }
                 Op::Store(slot, a) => {
-                    program.layout.slot(slot).write(image, Value::from_bits(ty, of(a)));
+                    let (offset, ty) = slots[slot.index()];
+                    write(image, offset, Value::from_bits(ty, of(a)));
                     continue;
                 }
                 Op::Unary(op, a) => evaluate::unary(op, ty, of(a)),

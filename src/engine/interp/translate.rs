@@ -37,9 +37,10 @@ struct Translator<'a> {
     values: Vec<Function>,
     /// How often each value is still used, from the present instruction on.
     uses: Vec<u32>,
-    /// The first store of each value, and of each store the access to its slot before, as places of instructions.
+    /// The place of the first store of each value.
     first_store: Vec<Option<usize>>,
-    access_before: HashMap<usize, usize>,
+    /// Of each store, one past the place where its slot was loaded or stored before, or 0.
+    access_before: Vec<usize>,
     /// Which values may be made of the cell of a slot.
     watchers: HashMap<u32, Vec<ValueId>>,
     constants: HashMap<(u32, u64), u32>,
@@ -57,8 +58,8 @@ impl<'a> Translator<'a> {
     fn new(program: &'a Program) -> Self {
         let count = program.instructions.len();
         let mut uses = vec![0; count];
-        let (mut first_store, mut access_before) = (vec![None; count], HashMap::new());
-        let mut last_access = HashMap::new();
+        let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
+        let mut last_access = vec![0; program.layout.slots().len()];
         // The time comes right behind the image.
         let mut cells = vec![0; (program.layout.size() + CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
@@ -67,14 +68,10 @@ impl<'a> Translator<'a> {
                 uses[operand.index()] += 1;
             }
             match instruction.op {
-                Op::Load(slot) => {
-                    last_access.insert(slot, index);
-                }
+                Op::Load(slot) => last_access[slot.index()] = index + 1,
                 Op::Store(slot, value) => {
                     first_store[value.index()].get_or_insert(index);
-                    if let Some(before) = last_access.insert(slot, index) {
-                        access_before.insert(index, before);
-                    }
+                    access_before[index] = std::mem::replace(&mut last_access[slot.index()], index + 1);
                 }
                 Op::Constant(bits) if instruction.ty != Elementary::Bool => {
                     constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {
@@ -187,16 +184,16 @@ impl<'a> Translator<'a> {
     }
 
     fn step(&mut self, value: ValueId, instruction: Instruction) {
-        let operands = instruction.op.operands();
-        let Some(first) = operands.map(|operand| self.settle(operand)).reduce(|first, _| first) else { return };
-        let Some((kind, swapped)) = Kind::of(instruction, self.ty(first)) else { return };
+        let operands: Vec<ValueId> = instruction.op.operands().collect();
+        operands.iter().for_each(|operand| self.settle(*operand));
+        let kind = operands.first().and_then(|first| Kind::of(instruction, self.ty(*first)));
+        let Some((kind, swapped)) = kind else { return };
         // An operand for the last time may lie in the very cell that the step sets: it reads before it writes.
-        let last: Vec<ValueId> = instruction.op.operands().collect();
-        last.iter().for_each(|operand| self.uses[operand.index()] -= 1);
+        operands.iter().for_each(|operand| self.uses[operand.index()] -= 1);
         let target = self.target(value, instruction.ty);
-        last.iter().for_each(|operand| self.uses[operand.index()] += 1);
+        operands.iter().for_each(|operand| self.uses[operand.index()] += 1);
         let mut cells = [0; 3];
-        for (cell, operand) in cells.iter_mut().zip(instruction.op.operands()) {
+        for (cell, operand) in cells.iter_mut().zip(&operands) {
             *cell = self.values[operand.index()].as_cell().unwrap_or_default();
         }
         if swapped {
@@ -213,12 +210,11 @@ impl<'a> Translator<'a> {
     }
 
     /// Sees to it that a value has a cell of its own.
-    fn settle(&mut self, value: ValueId) -> ValueId {
+    fn settle(&mut self, value: ValueId) {
         if self.values[value.index()].as_cell().is_none() {
             let target = self.target(value, Elementary::Bool);
             self.compute(value, target);
         }
-        value
     }
 
     /// Computes a BOOL into a cell, or copies a value there; from now on it is that cell.
@@ -237,7 +233,7 @@ impl<'a> Translator<'a> {
     fn target(&mut self, value: ValueId, ty: Elementary) -> u32 {
         if let Some(store) = self.first_store[value.index()].filter(|store| *store > self.at)
             && let Op::Store(slot, _) = self.program.instructions[store].op
-            && self.access_before.get(&store).is_none_or(|before| *before < self.at)
+            && self.access_before[store] <= self.at
         {
             let cell = self.program.layout.slot(slot).offset;
             self.release(cell, value);
@@ -265,11 +261,11 @@ impl<'a> Translator<'a> {
     }
 }
 
-/// A BOOL operation on BOOLs.
+/// An operation of which all operands and the result are BOOL.
 #[derive(Clone, Copy)]
 struct Boolean(Op);
 
-/// The operation, if it is one on BOOLs only.
+/// The instruction's operation, if it is boolean.
 fn boolean(program: &Program, instruction: Instruction) -> Option<Boolean> {
     let is_bool = |value: ValueId| program.instructions[value.index()].ty == Elementary::Bool;
     let all = instruction.ty == Elementary::Bool && instruction.op.operands().all(is_bool);

@@ -45,7 +45,11 @@ impl Parser<'_> {
         };
         let span = self.token.span;
         let operand = match self.token.kind {
-            Kind::Keyword(Keyword::True | Keyword::False) => self.expression_of_token()?,
+            Kind::Keyword(keyword @ (Keyword::True | Keyword::False)) => {
+                self.advance();
+                let value = Literal::Bool(keyword == Keyword::True);
+                Expression { kind: ExpressionKind::Literal(value), span }
+            }
             Kind::Name | Kind::QuotedName | Kind::Address => self.contact_operand()?,
             _ => return self.no_element(span),
         };
@@ -93,40 +97,39 @@ impl Parser<'_> {
     fn coil(&mut self) -> Parse<ElementKind> {
         let open = self.token.span;
         self.advance();
+        let (kind, target) = self.coil_inside()?;
+        self.close(Kind::RightParenthesis, open, COIL_HINT)?;
+        Ok(ElementKind::Coil { kind, target })
+    }
+
+    fn coil_inside(&mut self) -> Parse<(CoilKind, Reference)> {
+        const EXPECTED: &str = "the coil's variable";
         if self.take(Kind::Slash) {
-            let target = self.reference("the coil's variable")?;
-            self.close(Kind::RightParenthesis, open, COIL_HINT)?;
-            return Ok(ElementKind::Coil { kind: CoilKind::Negated, target });
+            return Ok((CoilKind::Negated, self.reference(EXPECTED)?));
+        }
+        if self.token.kind == Kind::Address {
+            return Ok((CoilKind::Plain, self.reference(EXPECTED)?));
         }
         if matches!(self.token.kind, Kind::Star | Kind::Caret | Kind::LeftParenthesis) {
-            let problem = self.unexpected("the coil's variable");
+            let problem = self.unexpected(EXPECTED);
             let comment = self.token.kind == Kind::Star;
             return self.give_up(problem.hint(if comment { "a comment starts with --" } else { COIL_HINT }));
         }
-        let word = self.token;
-        let kind = match self.source.slice(word.span) {
-            _ if word.kind != Kind::Name => None,
+        // Alone, such a letter is the name of a variable, and in back quotes always.
+        let letter = match self.source.slice(self.token.span) {
             "S" | "s" => Some(CoilKind::Set),
             "R" | "r" => Some(CoilKind::Reset),
             "P" | "p" => Some(CoilKind::Rising),
             "N" | "n" => Some(CoilKind::Falling),
             _ => None,
         };
-        if self.token.kind == Kind::Address {
-            let target = self.reference("the coil's variable")?;
-            self.close(Kind::RightParenthesis, open, COIL_HINT)?;
-            return Ok(ElementKind::Coil { kind: CoilKind::Plain, target });
-        }
-        let name = self.name("the coil's variable")?;
-        let (kind, target) = match kind {
-            // Alone, such a letter is the name of a variable.
+        let name = self.name(EXPECTED)?;
+        match letter {
             Some(kind) if self.token.kind.is_name() || self.token.kind == Kind::Address => {
-                (kind, self.reference("the coil's variable")?)
+                Ok((kind, self.reference(EXPECTED)?))
             }
-            _ => (CoilKind::Plain, self.steps(name)?),
-        };
-        self.close(Kind::RightParenthesis, open, COIL_HINT)?;
-        Ok(ElementKind::Coil { kind, target })
+            _ => Ok((CoilKind::Plain, self.steps(name)?)),
+        }
     }
 
     fn braces(&mut self) -> Parse<ElementKind> {
@@ -223,14 +226,6 @@ impl Parser<'_> {
             return self.give_up(problem);
         };
         Ok(Some(Argument { pin, wire, span: self.since(start) }))
-    }
-
-    /// A literal that is the current token, TRUE and FALSE included.
-    fn expression_of_token(&mut self) -> Parse<Expression> {
-        let span = self.token.span;
-        let value = self.token.kind == Kind::Keyword(Keyword::True);
-        self.advance();
-        Ok(Expression { kind: ExpressionKind::Literal(Literal::Bool(value)), span })
     }
 
     /// A name or an address, with its members and bits.

@@ -35,7 +35,7 @@ pub fn print(program: &Program) -> String {
         page.blank_line();
         page.flush_all();
     }
-    page.text.push('\n');
+    page.line(0);
     page.text
 }
 

@@ -53,8 +53,8 @@ fn runs_come_in_order_and_bools_first_in_each() {
     ];
     assert_eq!(places, expected);
     assert_eq!(layout.inputs(), [Extent { bytes: 0..16, bools: 0..2 }]);
-    assert_eq!(layout.outputs(), [16..20]);
-    assert_eq!(layout.retained(), [18..32]);
+    assert_eq!(layout.outputs(), std::slice::from_ref(&(16..20)));
+    assert_eq!(layout.retained(), std::slice::from_ref(&(18..32)));
     assert_eq!(layout.size(), 56, "48 bytes, 3 of padding, rounded up");
     assert_eq!(layout.problems(), Vec::<String>::new());
 }

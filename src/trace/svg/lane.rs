@@ -128,3 +128,87 @@ fn time(value: Value) -> i64 {
 pub(super) fn number(value: Value) -> f64 {
     value.as_real().unwrap_or_else(|| value.as_integer().unwrap_or_default() as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::logic::{Area, LayoutBuilder, Slot};
+
+    fn lane(ty: Elementary, shortest: i64) -> Lane {
+        let mut builder = LayoutBuilder::new();
+        let initial = Value::default_of(ty);
+        let slot = Slot { name: "x".to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+        let slot = builder.slot(slot);
+        builder.observe("x", slot);
+        Lane::new(Signal::all(&builder.finish(None).expect("a small image")).remove(0), shortest)
+    }
+
+    fn pieces(shortest: i64, values: &[i64]) -> Vec<(i64, i64, Shape)> {
+        let mut lane = lane(Elementary::Time, shortest);
+        for (scan, value) in (0..).zip(values) {
+            lane.record(scan * 10, Value::time(*value));
+        }
+        lane.finish(10 * i64::try_from(values.len()).expect("few"));
+        lane.pieces.iter().map(|piece| (piece.start, piece.end, piece.shape)).collect()
+    }
+
+    fn level(time: i64) -> Shape {
+        Shape::Level(Value::time(time))
+    }
+
+    #[test]
+    fn a_timer_s_elapsed_time_is_a_ramp_that_arrives_or_is_reset() {
+        let ramp = |from, to, arrived| Shape::Ramp { from, to, arrived };
+        assert_eq!(
+            pieces(0, &[0, 0, 10, 20, 25, 25, 25, 0, 10, 20, 0]),
+            [
+                (0, 10, level(0)),
+                (10, 40, ramp(0, 25, true)),
+                (40, 70, level(25)),
+                (70, 90, ramp(0, 20, false)),
+                (90, 100, level(20)),
+                (100, 110, level(0)),
+            ]
+        );
+        // Rising from the first scan on; and a jump by more than the time is none.
+        assert_eq!(
+            pieces(0, &[0, 10, 10, 90]),
+            [(0, 10, ramp(0, 10, false)), (10, 30, level(10)), (30, 40, level(90)),]
+        );
+    }
+
+    #[test]
+    fn short_pieces_are_joined_but_for_a_single_one() {
+        assert_eq!(
+            pieces(15, &[0, 0, 50, 0, 0, 50, 0, 50, 0, 0]),
+            [(0, 20, level(0)), (20, 30, level(50)), (30, 50, level(0)), (50, 80, Shape::Busy), (80, 100, level(0)),]
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_cover_the_recording_without_gap_and_are_few(
+            values in proptest::collection::vec(0i64..40, 1..300), shortest in 0i64..60
+        ) {
+            let pieces = pieces(shortest, &values);
+            let end = 10 * i64::try_from(values.len()).expect("few");
+            prop_assert_eq!(pieces[0].0, 0);
+            prop_assert_eq!(pieces[pieces.len() - 1].1, end);
+            prop_assert!(pieces.windows(2).all(|pair| pair[0].1 == pair[1].0), "{:?}", pieces);
+            if let Some(most) = end.checked_div(shortest) {
+                prop_assert!(i64::try_from(pieces.len()).expect("few") <= 2 * most + 4, "{:?}", pieces);
+            }
+        }
+
+        #[test]
+        fn any_times_and_values_are_drawn(records: Vec<(i64, i64)>, end: i64) {
+            let mut lane = lane(Elementary::Time, 1000);
+            for (now, value) in records {
+                lane.record(now, Value::time(value));
+            }
+            lane.finish(end);
+        }
+    }
+}

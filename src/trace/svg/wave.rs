@@ -154,7 +154,8 @@ impl Band<'_> {
             if let Shape::Ramp { from: 0, to, .. } = piece.shape
                 && stays
             {
-                group = self.preset(group, (start, end), y(to as f64), &format!("T={}", duration(to)));
+                let stays_until = next.map_or(end, |next| self.axis.x(next.end));
+                group = preset(group, start, end, stays_until, y(to as f64), &format!("T={}", duration(to)));
             }
         }
         let mut area = String::new();
@@ -173,29 +174,6 @@ impl Band<'_> {
         self.paths(group, class, line, area)
     }
 
-    /// A measure from the start of a ramp to its end, with the time that it took.
-    fn preset(&self, group: Group, (start, end): (f64, f64), y: f64, label: &str) -> Group {
-        // The ramp leaves the upper left half free.
-        let room = end - start;
-        if !fits(label, room * 0.62) {
-            return group;
-        }
-        let mut measure = String::new();
-        draw_to(&mut measure, 'M', &[start, y - 3.0]);
-        draw_to(&mut measure, 'V', &[y + 3.0]);
-        draw_to(&mut measure, 'M', &[start, y]);
-        draw_to(&mut measure, 'H', &[end]);
-        draw_to(&mut measure, 'M', &[start + 5.0, y - 2.5]);
-        draw_to(&mut measure, 'L', &[start, y]);
-        draw_to(&mut measure, 'L', &[start + 5.0, y + 2.5]);
-        draw_to(&mut measure, 'M', &[end - 5.0, y - 2.5]);
-        draw_to(&mut measure, 'L', &[end, y]);
-        draw_to(&mut measure, 'L', &[end - 5.0, y + 2.5]);
-        group
-            .add(Path::new().set("class", "preset").set("d", measure))
-            .add(text(label, start + 6.0, y + 14.0).set("class", "value"))
-    }
-
     fn busy(&self, start: f64, end: f64) -> Rectangle {
         Rectangle::new()
             .set("x", px(start))
@@ -212,6 +190,31 @@ impl Band<'_> {
         }
         group.add(Path::new().set("class", format!("{class} wave")).set("d", line))
     }
+}
+
+/// A measure from the start of a ramp to its end, with the time that it took: in the half above the ramp, or where
+/// that is too narrow, behind it.
+fn preset(group: Group, start: f64, end: f64, stays_until: f64, y: f64, label: &str) -> Group {
+    // At the height of the label's lower edge the ramp has gone two thirds of its way.
+    let x = if fits(label, (end - start) * 0.66 - 6.0) {
+        start + 6.0
+    } else if fits(label, stays_until - end) {
+        end + 4.0
+    } else {
+        return group;
+    };
+    let mut measure = String::new();
+    draw_to(&mut measure, 'M', &[start, y - 3.0]);
+    draw_to(&mut measure, 'V', &[y + 3.0]);
+    draw_to(&mut measure, 'M', &[start, y]);
+    draw_to(&mut measure, 'H', &[end]);
+    let head = 5f64.min((end - start) / 3.0);
+    for (tip, back) in [(start, start + head), (end, end - head)] {
+        draw_to(&mut measure, 'M', &[back, y - 2.5]);
+        draw_to(&mut measure, 'L', &[tip, y]);
+        draw_to(&mut measure, 'L', &[back, y + 2.5]);
+    }
+    group.add(Path::new().set("class", "preset").set("d", measure)).add(text(label, x, y + 14.0).set("class", "value"))
 }
 
 /// A value as a bus shows it.
