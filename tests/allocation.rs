@@ -3,11 +3,15 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::num::NonZeroU32;
 
+use rung::engine::both::Both;
 use rung::engine::interp::{Interpreter, Textbook};
 use rung::engine::jit::Jit;
+use rung::replay::Recorder;
 use rung::source::Source;
-use rung_runtime::Scan;
+use rung_runtime::host::{MonotonicClock, Panel, PanelIo, Statistics};
+use rung_runtime::{Controller, Extent, Regions, Scan, TickCounter};
 
 /// Counts this thread's allocations.
 struct Counting;
@@ -70,4 +74,31 @@ fn a_scan_allocates_nothing() {
         });
         assert_eq!(made, 0);
     }
+}
+
+#[test]
+fn a_cycle_and_its_measurement_allocate_nothing() {
+    let source = Source::new("start_stop.rung", include_str!("../examples/start_stop.rung"));
+    let checked = rung::check::check(&rung::frontend::parse(&source).program).0.expect("a sound example");
+    let program = rung::lower::lower(&checked, &source, None).expect("a small image");
+    let layout = &program.layout;
+    let extent = |run: &rung::logic::image::Extent| Extent { bytes: run.bytes.clone(), bools: run.bools.clone() };
+    let inputs: Vec<Extent> = layout.inputs().iter().map(extent).collect();
+    let regions = Regions::new(&inputs, layout.outputs(), layout.retained(), layout.size()).expect("sound regions");
+    let mut image = layout.initial_image();
+    let field = PanelIo::new(Panel::new(&regions, &image));
+    let both = Both::new(Interpreter::new(&program), Interpreter::new(&program), layout);
+    let scan = Recorder::new(both, layout);
+    let counter = TickCounter::new(NonZeroU32::MIN);
+    let mut controller = Controller::new(scan, field, &counter, MonotonicClock, u64::MAX, regions, &mut image);
+    let statistics = Statistics::default();
+    let made = allocations(|| {
+        // More scans than the recorder keeps.
+        for _ in 0..10_000 {
+            let cycle = controller.cycle().expect("nothing is wrong");
+            statistics.scan.record(cycle.took);
+            counter.tick();
+        }
+    });
+    assert_eq!(made, 0);
 }

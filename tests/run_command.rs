@@ -54,6 +54,7 @@ fn what_cannot_be_run_is_a_coded_error() {
         (&["--cycle", "1ms", "--tick", "2ms"], "R1001"),
         (&["--cycle", "10s", "--tick", "10s"], "R1001"),
         (&["--cycle", "2h"], "R1001"),
+        (&["--tick", "1ns"], "R1001"),
         (&["--set", "start"], "R0205"),
         (&["--set", "nothing=1"], "R0301"),
         (&["--set", "motor=1"], "R0301"),

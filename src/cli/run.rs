@@ -1,5 +1,6 @@
 //! `rung run`: a program in real time, on a simulated panel.
 
+mod difference;
 mod elements;
 mod engine;
 mod machine;
@@ -19,7 +20,7 @@ use rung_runtime::host::{End, Histogram, Statistics};
 use rung_runtime::{Fault, Stopped};
 
 use super::load::Loaded;
-use super::{Failure, duration, load_checked, print, write_whole};
+use super::{Failure, duration, load_checked, print};
 use crate::check::Checked;
 use crate::diagnostic::Code;
 use crate::elementary::Value;
@@ -27,7 +28,6 @@ use crate::logic::Program;
 use crate::logic::image::Slot;
 use crate::lower::lower;
 use crate::opt::optimise;
-use crate::replay::source_hash;
 use engine::{Engine, Kind};
 use machine::{Lost, Machine, Outcome, Timing};
 use points::Points;
@@ -37,7 +37,8 @@ use points::Points;
 const WATCHDOG_CYCLES: i64 = 10;
 const LEAST_DEFAULT_WATCHDOG: i64 = 100_000_000;
 
-/// The longest tick and cycle, an hour.
+/// The shortest tick, 50 us: below, waking takes longer than the tick. The longest cycle is an hour.
+const SHORTEST_TICK: i64 = 50_000;
 const LONGEST_CYCLE: i64 = 3_600_000_000_000;
 
 /// Runs a program in real time on a simulated panel, until Ctrl-C
@@ -93,19 +94,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let told = if live { Vec::new() } else { points.told() };
     let machine = Machine::start(engine, &program.layout, &inputs, timing, &told, stop)
         .map_err(|error| Failure::new(Code::CannotStart, error.to_string()))?;
-    print(&format!("  {}\n", machine.scheduling))?;
-    let watched = if live {
-        view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
-    } else {
-        plain::watch(&machine, &told)
-    };
+    let watched = print(&format!("  {}\n", machine.scheduling)).and_then(|()| {
+        if live {
+            view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
+        } else {
+            plain::watch(&machine, &told)
+        }
+    });
 
     // Whoever watched may have gone, but the outputs are to be off before anything else.
     machine.shared.stop.store(true, Ordering::Relaxed);
     let shared = Arc::clone(&machine.shared);
     let outcome = machine.finish();
-    watched?;
-    print(&summary(&shared.statistics, timing.watchdog))?;
+    let watched = watched.and_then(|()| print(&summary(&shared.statistics, timing.watchdog)));
+    // A fault is told in any case, also where nobody reads the standard output any more.
     match outcome {
         Err(Lost::Hung) => {
             let limit = time::rounded(timing.watchdog);
@@ -113,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Stopped, message))
         }
         Err(Lost::Panicked) => Err(Failure::new(Code::Stopped, "the scan panicked; the outputs are off")),
-        Ok(outcome) => ended(outcome, arguments, &loaded, &program),
+        Ok(outcome) => ended(outcome, arguments, &loaded, &program).and(watched),
     }
 }
 
@@ -126,8 +128,9 @@ fn timing(arguments: &Arguments) -> Result<Timing, Failure> {
         return Err(bad(format!("the cycle, {cycle}, is no multiple of the tick, {tick}")));
     }
     let count = |number: i64| u32::try_from(number).ok().and_then(NonZeroU32::new);
-    let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), cycle <= LONGEST_CYCLE) else {
-        return Err(bad("a tick may have at most 4 s, a cycle an hour".to_owned()));
+    let within = tick >= SHORTEST_TICK && cycle <= LONGEST_CYCLE;
+    let (Some(tick), Some(ticks), true) = (count(tick), count(cycle / tick), within) else {
+        return Err(bad("a tick may have from 50us to 4s, a cycle up to an hour".to_owned()));
     };
     Ok(Timing {
         tick,
@@ -218,45 +221,15 @@ fn ended(outcome: Outcome<Engine>, arguments: &Arguments, loaded: &Loaded, progr
             let message = format!("a cycle took {took}, longer than the watchdog's {limit}; the outputs are off");
             Err(Failure::new(Code::Stopped, message))
         }
-        Fault::Distrusted => Err(differ(&outcome.engine, arguments, loaded, program)?),
+        Fault::Distrusted => {
+            let Some((difference, replay)) = outcome.engine.difference(program) else {
+                return Err(Failure::new(Code::EnginesDiffer, "the engines differ; the outputs are off"));
+            };
+            let path = arguments.replay.clone().unwrap_or_else(|| default_replay(&arguments.file));
+            Err(difference::leave(&difference, replay, (&arguments.file, &loaded.source), &path)?)
+        }
         Fault::AlreadyStopped => Err(Failure::new(Code::Stopped, "the controller had stopped before")),
     }
-}
-
-/// Says where the engines differ, and leaves the replay.
-fn differ(engine: &Engine, arguments: &Arguments, loaded: &Loaded, program: &Program) -> Result<Failure, Failure> {
-    let Some((difference, mut replay)) = engine.difference(program) else {
-        return Ok(Failure::new(Code::EnginesDiffer, "the engines differ; the outputs are off"));
-    };
-    let values = difference.values.map_or_else(
-        || format!("{:?} interpreted, {:?} compiled", difference.bytes.0, difference.bytes.1),
-        |(first, second)| {
-            let [interpreted, compiled] = [first, second].map(points::shown);
-            let bytes = if interpreted == compiled {
-                format!(" (bytes {:?} and {:?})", difference.bytes.0, difference.bytes.1)
-            } else {
-                String::new()
-            };
-            format!("{interpreted} interpreted, {compiled} compiled{bytes}")
-        },
-    );
-    let rung = difference.rung.map_or_else(String::new, |(label, line)| format!("; written by {label}, line {line}"));
-    let others = match difference.others {
-        0 => String::new(),
-        others => format!("; {others} other values differ"),
-    };
-    let scan = replay.scans.last().map_or(0, |scan| scan.now);
-    let reason = format!("{}: {values}{rung}{others}, in the scan at {}", difference.name, time::exact(scan));
-    replay.program = arguments.file.display().to_string();
-    replay.source_hash = source_hash(&loaded.source);
-    replay.reason.clone_from(&reason);
-    let path = arguments.replay.clone().unwrap_or_else(|| default_replay(&arguments.file));
-    write_whole(&path, replay.to_json().as_bytes())?;
-    let message = format!(
-        "the engines differ; the outputs are off\n  {reason}\n  replay it with: rung sim --replay {}",
-        path.display()
-    );
-    Ok(Failure::new(Code::EnginesDiffer, message))
 }
 
 /// Where a replay of this program is left.

@@ -1,25 +1,30 @@
 //! The tick interrupt of a host: a thread that wakes at absolute deadlines.
 //!
 //! Being late, it adds all the ticks that have passed, so that time never drifts. It does nothing else, but wake
-//! the one thread that waits for a tick.
+//! the one thread that waits for a tick, should that have been awake before the tick was counted.
 
 use std::io;
 use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering, fence};
-use std::sync::{Arc, OnceLock, mpsc};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use std::thread::{self, JoinHandle, Thread};
 use std::time::Duration;
 
 use super::{Alarm, Grant, MonotonicClock, Pace, Role, schedule_this_thread};
 use crate::{Clock, TickCounter, TickSource};
 
-/// How long a wait lasts before it looks around.
-const LONGEST_WAIT: Duration = Duration::from_millis(50);
+/// How long a wait lasts before it looks around, in nanoseconds.
+const LONGEST_WAIT: u64 = 50_000_000;
+/// How long a thread that woke with the tick, but a little before it was counted, looks for it before it sleeps
+/// again, in nanoseconds: less than being woken a second time takes.
+const SPIN: u64 = 40_000;
 
 /// A running tick thread; dropping it ends it.
 #[derive(Debug)]
 pub struct TickThread {
     shared: Arc<Shared>,
+    /// The alarm of the thread that waits.
+    waiting: Mutex<Alarm>,
     scheduling: Grant,
     thread: Option<JoinHandle<()>>,
 }
@@ -43,6 +48,7 @@ impl TickThread {
     /// When the system gives no thread or no timer.
     pub fn start(period: NonZeroU32) -> io::Result<Self> {
         let mut alarm = Alarm::new()?;
+        let waiting = Mutex::new(Alarm::new()?);
         let shared = Arc::new(Shared {
             counter: TickCounter::new(period),
             origin: MonotonicClock.nanoseconds(),
@@ -59,7 +65,7 @@ impl TickThread {
             ticking.run(&mut alarm);
         })?;
         let scheduling = granted.recv().unwrap_or(Grant::Unsupported);
-        Ok(Self { shared, scheduling, thread: Some(thread) })
+        Ok(Self { shared, waiting, scheduling, thread: Some(thread) })
     }
 
     /// Whether the thread runs with real-time scheduling.
@@ -129,12 +135,25 @@ impl TickSource for TickThread {
 /// Only one thread may wait: the first that does is the one that is woken.
 impl Pace for TickThread {
     fn wait(&self, tick: u32) {
+        // With an alarm of its own: to be woken by the tick thread, which had to be woken first, takes twice as long.
+        let (moment, now) = (self.moment(tick), MonotonicClock.nanoseconds());
+        let until = moment.min(now + LONGEST_WAIT);
+        let slept = self.waiting.lock().unwrap_or_else(PoisonError::into_inner).sleep_until(until);
+        if slept.is_ok() && until < moment {
+            return;
+        }
+        while MonotonicClock.nanoseconds() < until + SPIN {
+            if reached(self.ticks(), tick) {
+                return;
+            }
+            std::hint::spin_loop();
+        }
         self.shared.waiter.get_or_init(thread::current);
         self.shared.awaited.store(tick, Ordering::Relaxed);
         // With the fence of the tick thread: either it sees what is awaited, or the tick is seen here.
         fence(Ordering::SeqCst);
         if !reached(self.ticks(), tick) {
-            thread::park_timeout(LONGEST_WAIT);
+            thread::park_timeout(Duration::from_nanos(LONGEST_WAIT));
         }
     }
 
