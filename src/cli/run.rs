@@ -1,6 +1,6 @@
 //! `rung run`: a program in real time, on a simulated panel.
 
-mod count;
+mod elements;
 mod engine;
 mod machine;
 mod plain;
@@ -162,7 +162,7 @@ fn description(
     engine: &Engine,
     compiled_in: u64,
 ) -> String {
-    let counts = count::count(checked);
+    let counts = elements::count(checked);
     let rungs = checked.rungs().len();
     let code = engine
         .code_bytes()

@@ -21,11 +21,11 @@ pub(crate) mod tests;
 use std::fmt;
 use std::ops::Range;
 
-use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::{AbiParam, Function, Signature, UserFuncName, types};
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable, SetError};
+use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_frontend::FunctionBuilderContext;
 use target_lexicon::Architecture;
 

@@ -1,1 +1,253 @@
+//! Each pass before and after, and all of them against the textbook interpreter.
 
+use rung_runtime::Scan;
+
+use super::{PASSES, optimise};
+use crate::elementary::{Elementary, Value};
+use crate::engine::interp::Textbook;
+use crate::logic::{Area, Builder, Compare, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
+
+/// A program over BOOLs `a` to `e` and an INT `n`, made by `sections`, one after another.
+fn program(sections: &[fn(&mut Builder, &[SlotId])]) -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str, ty| {
+        let (name, initial) = (name.to_owned(), Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+    };
+    let mut slots: Vec<SlotId> = ["a", "b", "c", "d", "e"].map(|name| slot(name, Elementary::Bool)).to_vec();
+    slots.push(slot("n", Elementary::Int));
+    let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
+    for section in sections {
+        section(&mut logic, &slots);
+        logic.end_section(Origin { label: "r".into(), line: 1 });
+    }
+    logic.finish()
+}
+
+fn pass(name: &str, program: Program) -> Program {
+    let pass = PASSES.iter().find(|pass| pass.name == name).expect("a pass of that name");
+    (pass.run)(program)
+}
+
+/// The instructions after a pass and the sweep.
+fn after(name: &str, sections: &[fn(&mut Builder, &[SlotId])]) -> String {
+    print(&pass("sweep", pass(name, program(sections))))
+}
+
+/// One instruction after another, slots by name and values by place.
+fn print(program: &Program) -> String {
+    let name = |slot: SlotId| program.layout.slot(slot).name.clone();
+    let mut out = Vec::new();
+    for (index, instruction) in program.instructions.iter().enumerate() {
+        out.push(match instruction.op {
+            Op::Constant(bits) => format!("v{index} = {bits}"),
+            Op::Now => format!("v{index} = now"),
+            Op::Load(slot) => format!("v{index} = {}", name(slot)),
+            Op::Store(slot, a) => format!("{} := {a}", name(slot)),
+            Op::Unary(op, a) => format!("v{index} = {} {a}", op.mnemonic()),
+            Op::Binary(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
+            Op::Compare(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
+            Op::Select(c, a, b) => format!("v{index} = select {c} {a} {b}"),
+            Op::Convert(a) => format!("v{index} = {}({a})", instruction.ty),
+        });
+    }
+    out.join("; ")
+}
+
+#[test]
+fn forward_uses_what_was_stored_or_loaded() {
+    let text = after(
+        "forward",
+        &[|logic, s| {
+            let (first, again) = (logic.load(s[0]), logic.load(s[0]));
+            let both = logic.and(first, again);
+            logic.store(s[1], both);
+            let stored = logic.load(s[1]);
+            logic.store(s[2], stored);
+        }],
+    );
+    assert_eq!(text, "v0 = a; v1 = and v0 v0; b := v1; c := v1");
+}
+
+#[test]
+fn forward_reloads_what_was_loaded_in_another_section_and_what_was_stored_far_away() {
+    fn copy(logic: &mut Builder, s: &[SlotId]) {
+        let value = logic.load(s[0]);
+        logic.store(s[1], value);
+    }
+    fn read(logic: &mut Builder, s: &[SlotId]) {
+        let value = logic.load(s[1]);
+        logic.store(s[2], value);
+    }
+    fn nothing(_: &mut Builder, _: &[SlotId]) {}
+    assert_eq!(after("forward", &[copy, copy]), "v0 = a; b := v0; v2 = a; b := v2");
+    assert_eq!(after("forward", &[copy, read]), "v0 = a; b := v0; c := v0");
+    let mut far: Vec<fn(&mut Builder, &[SlotId])> = vec![copy];
+    far.extend([nothing as fn(&mut Builder, &[SlotId]); 6]);
+    far.push(read);
+    assert_eq!(after("forward", &far), "v0 = a; b := v0; v2 = b; c := v2");
+}
+
+#[test]
+fn nothing_is_forwarded_into_another_chunk_even_behind_an_empty_section() {
+    let mut program = program(&[
+        |logic, s| {
+            let value = logic.load(s[0]);
+            logic.store(s[1], value);
+        },
+        |_, _| {},
+        |logic, s| {
+            let value = logic.load(s[1]);
+            logic.store(s[2], value);
+        },
+    ]);
+    program.sections[1].starts_chunk = true;
+    assert_eq!(print(&pass("forward", program)), "v0 = a; b := v0; v2 = b; c := v2");
+}
+
+#[test]
+fn simplify_drops_neutral_operands_and_double_inversions() {
+    let text = after(
+        "simplify",
+        &[|logic, s| {
+            let rail = logic.bool(true);
+            let contact = logic.load(s[0]);
+            let inverse = logic.not(contact);
+            let again = logic.not(inverse);
+            let power = logic.and(rail, again);
+            let none = logic.bool(false);
+            let power = logic.or(none, power);
+            let same = logic.and(power, power);
+            logic.store(s[1], same);
+        }],
+    );
+    assert_eq!(text, "v0 = a; b := v0");
+}
+
+#[test]
+fn simplify_makes_selects_of_constants_joins() {
+    let text = after(
+        "simplify",
+        &[|logic, s| {
+            let (condition, old) = (logic.load(s[0]), logic.load(s[1]));
+            let (on, off) = (logic.bool(true), logic.bool(false));
+            let set = logic.select(condition, on, old);
+            logic.store(s[1], set);
+            let reset = logic.select(condition, off, old);
+            logic.store(s[2], reset);
+        }],
+    );
+    assert_eq!(text, "v0 = a; v1 = b; v2 = or v0 v1; b := v2; v4 = not v0; v5 = and v4 v1; c := v5");
+}
+
+#[test]
+fn simplify_computes_constants_and_turns_comparisons_round() {
+    let text = after(
+        "simplify",
+        &[|logic, s| {
+            let two = logic.constant(Value::from_bits(Elementary::Int, 2));
+            let four = logic.binary(crate::logic::Binary::Multiply, two, two);
+            let count = logic.load(s[5]);
+            let less = logic.compare(Compare::Less, count, four);
+            let not_less = logic.not(less);
+            logic.store(s[0], not_less);
+        }],
+    );
+    assert_eq!(text, "v0 = 4; v1 = n; v2 = ge v1 v0; a := v2");
+}
+
+#[test]
+fn gather_inverts_once() {
+    let text = after(
+        "gather",
+        &[|logic, s| {
+            let loads: Vec<_> = s[..4].iter().map(|slot| logic.load(*slot)).collect();
+            let (not_b, not_d) = (logic.not(loads[1]), logic.not(loads[3]));
+            let power = logic.and(loads[0], not_b);
+            let power = logic.and(power, loads[2]);
+            let power = logic.and(power, not_d);
+            logic.store(s[4], power);
+        }],
+    );
+    assert_eq!(
+        text,
+        "v0 = a; v1 = b; v2 = c; v3 = d; v4 = or v1 v3; v5 = not v4; v6 = and v0 v5; v7 = and v6 v2; e := v7"
+    );
+}
+
+#[test]
+fn gather_leaves_alone_what_has_another_use() {
+    let text = after(
+        "gather",
+        &[|logic, s| {
+            let (a, b, c) = (logic.load(s[0]), logic.load(s[1]), logic.load(s[2]));
+            let part = logic.and(a, b);
+            logic.store(s[3], part);
+            let not_c = logic.not(c);
+            let power = logic.and(part, not_c);
+            logic.store(s[4], power);
+        }],
+    );
+    assert_eq!(text, "v0 = a; v1 = b; v2 = c; v3 = and v0 v1; d := v3; v5 = not v2; v6 = and v3 v5; e := v6");
+}
+
+#[test]
+fn sweep_removes_unused_values_and_stores_that_nobody_sees() {
+    let text = print(&pass(
+        "sweep",
+        program(&[
+            |logic, s| {
+                let (a, b) = (logic.load(s[0]), logic.load(s[1]));
+                logic.and(a, b);
+                logic.store(s[2], a);
+                logic.store(s[2], b);
+                logic.store(s[3], a);
+                let read = logic.load(s[3]);
+                logic.store(s[3], b);
+                logic.store(s[4], read);
+            },
+            |logic, s| {
+                let a = logic.load(s[0]);
+                logic.store(s[2], a);
+            },
+        ]),
+    ));
+    assert_eq!(text, "v0 = a; v1 = b; c := v1; d := v0; v4 = d; d := v1; e := v4; v7 = a; c := v7");
+}
+
+#[test]
+fn a_tree_of_a_hundred_thousand_contacts_is_gathered() {
+    let program = program(&[|logic, s| {
+        let mut power = logic.load(s[0]);
+        for _ in 0..100_000 {
+            let contact = logic.load(s[1]);
+            let open = logic.not(contact);
+            power = logic.and(power, open);
+        }
+        logic.store(s[2], power);
+    }]);
+    assert!(optimise(program).instructions.len() < 400_000);
+}
+
+#[test]
+fn every_pass_keeps_image_sections_and_chunks() {
+    for seed in 0..400 {
+        let original = random::program(seed);
+        let mut passed = original.clone();
+        for pass in PASSES {
+            passed = (pass.run)(passed);
+            assert_eq!((&passed.layout, &passed.origins), (&original.layout, &original.origins));
+            assert_eq!(passed.chunks(), original.chunks(), "{}", pass.name);
+            let (mut before, mut after) = (Textbook::new(&original), Textbook::new(&passed));
+            let mut expected = random::image(&original.layout, seed);
+            let mut actual = expected.clone();
+            for scan in 0..4 {
+                let now = random::now(seed + scan);
+                before.scan(&mut expected, now);
+                after.scan(&mut actual, now);
+                assert_eq!(expected, actual, "{} of seed {seed}:\n{}\n{}", pass.name, print(&original), print(&passed));
+            }
+        }
+        assert!(passed.instructions.len() <= original.instructions.len() * 2);
+    }
+}

@@ -1,7 +1,7 @@
 //! What a person sees and sets while a program runs: its inputs, outputs, variables and blocks by name.
 
-use super::{duration, time};
-use crate::check::{Checked, Type};
+use super::{duration, elements, time};
+use crate::check::{Checked, Element, ExpressionKind, Input, Place, Type, Wire};
 use crate::elementary::{Elementary, Value, f32_of};
 use crate::ladder::library::StandardBlock;
 use crate::logic::Layout;
@@ -29,7 +29,25 @@ pub(super) struct Block {
     /// What it has reached: ET or CV.
     pub reached: Option<Point>,
     /// What it is to reach: PT or PV.
-    pub preset: Option<Point>,
+    pub preset: Option<Preset>,
+}
+
+/// Where a preset comes from.
+#[derive(Clone, Debug)]
+pub(super) enum Preset {
+    /// It is always the same.
+    Constant(Value),
+    /// It is in the image.
+    Slot(Slot),
+}
+
+impl Preset {
+    pub(super) fn value(&self, image: &[u8]) -> Value {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Slot(slot) => slot.read(image),
+        }
+    }
 }
 
 /// All of them.
@@ -58,13 +76,12 @@ impl Points {
                 Area::State => {}
             }
         }
-        for variable in checked.variables() {
+        let presets = presets(checked, layout);
+        for (variable, preset) in checked.variables().iter().zip(presets) {
             if let Type::Block(kind) = variable.ty {
-                points.blocks.push(Block::new(&variable.name, kind, layout));
+                points.blocks.push(Block::new(&variable.name, kind, preset, layout));
             }
         }
-        // A block that is declared has its members among the memory in some layouts; they belong to the block.
-        points.variables.retain(|point| !point.name.contains('.'));
         points
     }
 
@@ -80,26 +97,38 @@ impl Points {
     }
 }
 
-impl Block {
-    fn new(name: &str, kind: StandardBlock, layout: &Layout) -> Self {
-        let find = |member: &str| {
-            let name = format!("{name}.{member}");
-            let observed = layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(&name));
-            let slot = match observed {
-                Some(observed) => Some(layout.slot(observed.slot)),
-                None => layout.slots().iter().find(|slot| slot.name.eq_ignore_ascii_case(&name)),
-            };
-            slot.map(|slot| Point { name, slot: slot.clone(), key: None })
+/// What the numeric input of each block instance is wired to, where that is a constant or a variable.
+fn presets(checked: &Checked, layout: &Layout) -> Vec<Option<Preset>> {
+    let mut presets = vec![None; checked.variables().len()];
+    elements::visit(checked, |element| {
+        let Element::Call(call) = element else { return };
+        let number = call.block.inputs().iter().position(|pin| pin.ty != Elementary::Bool);
+        let wired = call.inputs.iter().find(|input| Some(input.pin) == number);
+        let Some(Input { wire: Wire::Value(expression), .. }) = wired else { return };
+        presets[call.instance.index()] = match &expression.kind {
+            ExpressionKind::Constant(value) => Some(Preset::Constant(*value)),
+            ExpressionKind::Read(Place { variable, pin: None, bit: None }) => {
+                slot(layout, &checked.variable(*variable).name).map(Preset::Slot)
+            }
+            _ => None,
         };
-        let is_bool = |ty: Elementary| ty == Elementary::Bool;
-        let outputs = kind.outputs();
-        Self {
-            name: name.to_owned(),
-            kind,
-            powers: outputs.iter().filter(|pin| is_bool(pin.ty)).filter_map(|pin| find(pin.name)).collect(),
-            reached: outputs.iter().find(|pin| !is_bool(pin.ty)).and_then(|pin| find(pin.name)),
-            preset: kind.inputs().iter().find(|pin| !is_bool(pin.ty)).and_then(|pin| find(pin.name)),
-        }
+    });
+    presets
+}
+
+/// The slot of an observed name.
+fn slot(layout: &Layout, name: &str) -> Option<Slot> {
+    layout.observed().iter().find(|observed| observed.name == name).map(|observed| layout.slot(observed.slot).clone())
+}
+
+impl Block {
+    fn new(name: &str, kind: StandardBlock, preset: Option<Preset>, layout: &Layout) -> Self {
+        let outputs = kind.outputs().iter().filter_map(|pin| {
+            let name = format!("{name}.{}", pin.name);
+            slot(layout, &name).map(|slot| Point { name, slot, key: None })
+        });
+        let (powers, numbers): (Vec<_>, Vec<_>) = outputs.partition(|output| output.slot.ty == Elementary::Bool);
+        Self { name: name.to_owned(), kind, powers, reached: numbers.into_iter().next(), preset }
     }
 }
 

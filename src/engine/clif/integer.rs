@@ -9,7 +9,8 @@ use crate::logic::{Binary, Unary, ValueId};
 
 impl Lowering<'_, '_> {
     pub(super) fn integer_unary(&mut self, op: Unary, ty: Elementary, a: ValueId) -> Value {
-        let a = self.value(a);
+        // x64 would join a wide load with the 1 in a register of its own.
+        let a = if op == Unary::Not { self.exact_value(a) } else { self.value(a) };
         match op {
             Unary::Not if ty == Elementary::Bool => {
                 let form = self.builder.func.dfg.value_type(a);

@@ -161,6 +161,15 @@ impl Lowering<'_, '_> {
 
     /// Uses a value: a BOOL in either of its forms.
     pub(super) fn value(&mut self, id: ValueId) -> Value {
+        self.value_by(id, Self::load)
+    }
+
+    /// The same, but a load that is made for it reads its own byte only, into a register.
+    pub(super) fn exact_value(&mut self, id: ValueId) -> Value {
+        self.value_by(id, Self::exact_load)
+    }
+
+    fn value_by(&mut self, id: ValueId, load: impl FnOnce(&mut Self, SlotId) -> (Value, bool)) -> Value {
         let place = id.index() - self.first;
         self.uses[place] = self.uses[place].saturating_sub(1);
         if let Some(value) = self.held[place] {
@@ -170,7 +179,7 @@ impl Lowering<'_, '_> {
         match op {
             Op::Constant(bits) => self.integer_constant(holder(ty), bits),
             Op::Load(slot) => {
-                let (value, wide) = self.load(slot);
+                let (value, wide) = load(self, slot);
                 // A wide load costs nothing where it is used, and a register where it is kept.
                 if self.uses[place] > 0 && !wide {
                     self.held[place] = Some(value);
@@ -213,24 +222,32 @@ impl Lowering<'_, '_> {
     }
 
     /// Reads a slot; also whether it was done by a wide load.
-    fn load(&mut self, slot: SlotId) -> (Value, bool) {
-        let slot = self.program.layout.slot(slot);
-        let (pointer, way) = self.address(slot.offset);
-        let exact = MemFlagsData::trusted();
-        let signed = slot.ty.is_signed();
+    fn load(&mut self, id: SlotId) -> (Value, bool) {
+        let slot = self.program.layout.slot(id);
         let wide =
             slot.ty == Elementary::Bool && self.target.wide_loads && !self.stored.lately(slot.offset, self.section);
+        if !wide {
+            return self.exact_load(id);
+        }
+        let (pointer, way) = self.address(slot.offset);
+        (self.builder.ins().load(types::I32, MemFlagsData::new().with_notrap(), pointer, way), true)
+    }
+
+    /// Reads a slot, and no more than that.
+    fn exact_load(&mut self, id: SlotId) -> (Value, bool) {
+        let slot = self.program.layout.slot(id);
+        let (pointer, way) = self.address(slot.offset);
+        let (flags, signed) = (MemFlagsData::trusted(), slot.ty.is_signed());
         let ins = self.builder.ins();
         let value = match slot.ty.size() {
-            1 if wide => ins.load(types::I32, MemFlagsData::new().with_notrap(), pointer, way),
-            1 if signed => ins.sload8(types::I32, exact, pointer, way),
-            1 => ins.uload8(types::I32, exact, pointer, way),
-            2 if signed => ins.sload16(types::I32, exact, pointer, way),
-            2 => ins.uload16(types::I32, exact, pointer, way),
-            4 => ins.load(types::I32, exact, pointer, way),
-            _ => ins.load(types::I64, exact, pointer, way),
+            1 if signed => ins.sload8(types::I32, flags, pointer, way),
+            1 => ins.uload8(types::I32, flags, pointer, way),
+            2 if signed => ins.sload16(types::I32, flags, pointer, way),
+            2 => ins.uload16(types::I32, flags, pointer, way),
+            4 => ins.load(types::I32, flags, pointer, way),
+            _ => ins.load(types::I64, flags, pointer, way),
         };
-        (value, wide)
+        (value, false)
     }
 
     fn store(&mut self, id: SlotId, value: ValueId) {

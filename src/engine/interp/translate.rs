@@ -184,16 +184,16 @@ impl<'a> Translator<'a> {
     }
 
     fn step(&mut self, value: ValueId, instruction: Instruction) {
-        let operands = instruction.op.operands();
-        let Some(first) = operands.map(|operand| self.settle(operand)).reduce(|first, _| first) else { return };
-        let Some((kind, swapped)) = Kind::of(instruction, self.ty(first)) else { return };
+        let operands: Vec<ValueId> = instruction.op.operands().collect();
+        operands.iter().for_each(|operand| self.settle(*operand));
+        let kind = operands.first().and_then(|first| Kind::of(instruction, self.ty(*first)));
+        let Some((kind, swapped)) = kind else { return };
         // An operand for the last time may lie in the very cell that the step sets: it reads before it writes.
-        let last: Vec<ValueId> = instruction.op.operands().collect();
-        last.iter().for_each(|operand| self.uses[operand.index()] -= 1);
+        operands.iter().for_each(|operand| self.uses[operand.index()] -= 1);
         let target = self.target(value, instruction.ty);
-        last.iter().for_each(|operand| self.uses[operand.index()] += 1);
+        operands.iter().for_each(|operand| self.uses[operand.index()] += 1);
         let mut cells = [0; 3];
-        for (cell, operand) in cells.iter_mut().zip(instruction.op.operands()) {
+        for (cell, operand) in cells.iter_mut().zip(&operands) {
             *cell = self.values[operand.index()].as_cell().unwrap_or_default();
         }
         if swapped {
@@ -210,12 +210,11 @@ impl<'a> Translator<'a> {
     }
 
     /// Sees to it that a value has a cell of its own.
-    fn settle(&mut self, value: ValueId) -> ValueId {
+    fn settle(&mut self, value: ValueId) {
         if self.values[value.index()].as_cell().is_none() {
             let target = self.target(value, Elementary::Bool);
             self.compute(value, target);
         }
-        value
     }
 
     /// Computes a BOOL into a cell, or copies a value there; from now on it is that cell.
@@ -262,11 +261,11 @@ impl<'a> Translator<'a> {
     }
 }
 
-/// A BOOL operation on BOOLs.
+/// An operation of which all operands and the result are BOOL.
 #[derive(Clone, Copy)]
 struct Boolean(Op);
 
-/// The operation, if it is one on BOOLs only.
+/// The instruction's operation, if it is boolean.
 fn boolean(program: &Program, instruction: Instruction) -> Option<Boolean> {
     let is_bool = |value: ValueId| program.instructions[value.index()].ty == Elementary::Bool;
     let all = instruction.ty == Elementary::Bool && instruction.op.operands().all(is_bool);

@@ -133,7 +133,7 @@ fn block(block: &Block, image: &[u8]) -> String {
         })
         .collect();
     let reached = block.reached.as_ref().map(|reached| reached.slot.read(image));
-    let preset = block.preset.as_ref().map(|preset| preset.slot.read(image));
+    let preset = block.preset.as_ref().map(|preset| preset.value(image));
     let progress = match (reached, preset) {
         (Some(reached), Some(preset)) => {
             let bar = if is_timer(block.kind) { bar(reached, preset) } else { String::new() };
@@ -181,6 +181,7 @@ fn fitted(line: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::run::points::Preset;
     use crate::logic::image::{Area, Slot};
 
     fn point(name: &str, ty: Elementary, offset: u32, key: Option<char>) -> Point {
@@ -195,7 +196,7 @@ mod tests {
             kind: StandardBlock::Ton,
             powers: vec![point("delay.Q", Elementary::Bool, 1, None)],
             reached: Some(point("delay.ET", Elementary::Time, 8, None)),
-            preset: Some(point("delay.PT", Elementary::Time, 16, None)),
+            preset: Some(Preset::Slot(point("preset", Elementary::Time, 16, None).slot)),
         };
         Points {
             inputs: vec![
@@ -212,11 +213,9 @@ mod tests {
     fn drawn(width: usize, height: usize) -> Vec<String> {
         let (points, statistics) = (points(), Statistics::default());
         let mut image = vec![0; 24];
-        let blocks = &points.blocks[0];
         image[1] = 1;
-        for (member, time) in [(&blocks.reached, 1_500_000_000), (&blocks.preset, 6_000_000_000)] {
-            member.as_ref().expect("a member").slot.write(&mut image, Value::time(time));
-        }
+        point("delay.ET", Elementary::Time, 8, None).slot.write(&mut image, Value::time(1_500_000_000));
+        point("preset", Elementary::Time, 16, None).slot.write(&mut image, Value::time(6_000_000_000));
         let state = State {
             title: "plant",
             engine: "jit",
