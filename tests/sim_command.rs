@@ -220,6 +220,8 @@ fn build_writes_logic_intermediate_form_assembly_and_map() {
 fn with_an_earlier_map_every_variable_stays_where_it_was() {
     let folder = Folder::new();
     folder.stdout("build lamp.rung --map lamp.json");
+    folder.stdout("build lamp.rung --previous-map lamp.json --map again.json");
+    assert_eq!(folder.read("again.json"), folder.read("lamp.json"));
     let edited =
         PROGRAM.replace("input  switch", "input  bell, switch").replace("  switch delay", "  switch /bell delay");
     folder.write("edited.rung", &edited);
