@@ -124,4 +124,36 @@ impl fmt::Display for Spelled {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn values_are_spelled_shortly_and_exactly() {
+        let real = |value: f32| Spelled(Value::from_bits(Elementary::Real, u64::from(value.to_bits()))).to_string();
+        let reals = [0.0, -0.0, 1.0, 0.1, -2.5, 1e20, 1e-7, f32::MAX, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+        assert_eq!(
+            reals.map(real),
+            ["0", "-0", "1", "0.1", "-2.5", "1e20", "1e-7", "3.4028235e38", "NaN", "inf", "-inf"]
+        );
+        let lreal = Spelled(Value::real(Elementary::Lreal, 1.0 / 3.0).expect("an LREAL")).to_string();
+        assert_eq!(lreal, "0.3333333333333333");
+        let greatest = Spelled(Value::from_bits(Elementary::Ulint, u64::MAX)).to_string();
+        assert_eq!(greatest, "18446744073709551615");
+    }
+
+    proptest! {
+        #[test]
+        fn every_real_reads_back_equal(bits: u32, wide: u64) {
+            let real = f32::from_bits(bits);
+            let text = Spelled(Value::from_bits(Elementary::Real, u64::from(bits))).to_string();
+            let back: f32 = text.parse().expect("a number");
+            prop_assert!(back.to_bits() == bits || (back.is_nan() && real.is_nan()), "{}", text);
+
+            let text = Spelled(Value::from_bits(Elementary::Lreal, wide)).to_string();
+            let back: f64 = text.parse().expect("a number");
+            prop_assert!(back.to_bits() == wide || (back.is_nan() && f64::from_bits(wide).is_nan()), "{}", text);
+        }
+    }
+}

@@ -382,7 +382,10 @@ impl LayoutBuilder {
             end = layout.place(&fresh[start..start + run.len()], end)?;
             start += run.len();
         }
-        let size = (end + u64::from(TAIL_PADDING)).next_multiple_of(u64::from(ALIGNMENT));
+        // With nothing new the size stays, too, and by that the hash: the same program has the same layout.
+        let last = layout.slots.iter().map(|slot| u64::from(slot.offset) + u64::from(slot.ty.size())).max();
+        let needed = last.unwrap_or(0) + u64::from(TAIL_PADDING);
+        let size = needed.max(u64::from(earlier.size)).next_multiple_of(u64::from(ALIGNMENT));
         layout.size = u32::try_from(size).ok().filter(|size| *size <= MAXIMUM_SIZE).ok_or(ImageTooLarge)?;
         join(&mut layout.outputs, earlier.outputs.len());
         join(&mut layout.retained, earlier.retained.len());

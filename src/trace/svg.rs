@@ -1,8 +1,8 @@
 //! A trace as a timing diagram, drawn as textbooks draw them: a lane a signal, over one time axis.
 //!
 //! BOOLs are square waves, numbers are buses with their values where these fit, and elapsed times are ramps. What
-//! takes no more room than half a pixel is joined, so that the picture of a long trace is no larger than that of
-//! a short one. The picture must depend on nothing but the recording.
+//! changes faster than lines can be seen apart is joined, so that the picture of a long trace is no larger than that
+//! of a short one. The picture must depend on nothing but the recording.
 
 mod axis;
 mod lane;
@@ -23,8 +23,8 @@ use crate::logic::Area;
 
 /// Width of the time axis, in pixels.
 const PLOT_WIDTH: f64 = 960.0;
-/// Parts of the axis that are seen apart: half a pixel each.
-const SHORTEST_PARTS: i64 = 1920;
+/// Parts of the axis that are seen apart: a pixel and a half each, the width of a line.
+const SHORTEST_PARTS: i64 = 640;
 /// Room at the left, right and bottom edges.
 const MARGIN: f64 = 24.0;
 /// Where the lanes begin, below title and legend.
