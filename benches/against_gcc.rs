@@ -4,6 +4,8 @@
 //! `cargo bench --bench against_gcc` prints a table for 1451 rungs with 246 timers, medians of one run on one machine;
 //! `cargo test --benches` only shows on a small program that all of it works.
 
+#![expect(clippy::print_stdout, reason = "the table is what it is for")]
+
 use std::fmt::Write as _;
 use std::process::Command;
 use std::time::{Duration, Instant};

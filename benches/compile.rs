@@ -16,9 +16,9 @@ fn compiles(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("compile");
     group.sample_size(10);
     let target = host_isa().expect("a host with a back end").triple().clone();
-    for rungs in [18, 1451, 20_000] {
+    for rungs in [18, 1451, 20_000_u32] {
         let program = workload(rungs);
-        group.throughput(Throughput::Elements(rungs as u64));
+        group.throughput(Throughput::Elements(u64::from(rungs)));
         group.bench_function(format!("optimise/{rungs}"), |bencher| {
             bencher.iter_batched(|| program.clone(), opt::optimise, BatchSize::LargeInput);
         });

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use rung::engine::interp::Interpreter;
+use rung::engine::interp::{Interpreter, Textbook};
 use rung::engine::jit::Jit;
 use rung::opt;
 use rung_runtime::Scan;
@@ -17,14 +17,17 @@ use workload::workload;
 
 fn scans(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("scan");
-    for rungs in [18, 1451, 20_000] {
+    for rungs in [18, 1451, 20_000_u32] {
         let program = opt::optimise(workload(rungs));
         let bytes = &program.layout.inputs()[0].bytes;
         let inputs = bytes.start as usize..bytes.end as usize;
         let jit = Jit::compile(&program).expect("code for this machine");
-        group.throughput(Throughput::Elements(rungs as u64));
-        let engines: [(&str, Box<dyn Scan>); 2] =
-            [("jit", Box::new(jit)), ("interpreter", Box::new(Interpreter::new(&program)))];
+        group.throughput(Throughput::Elements(u64::from(rungs)));
+        let engines: [(&str, Box<dyn Scan>); 3] = [
+            ("jit", Box::new(jit)),
+            ("interpreter", Box::new(Interpreter::new(&program))),
+            ("textbook", Box::new(Textbook::new(&program))),
+        ];
         for (name, mut engine) in engines {
             let mut image = program.layout.initial_image();
             let mut rng = Pcg64::seed_from_u64(1);

@@ -1,7 +1,7 @@
 //! Lowering: from a checked program to one straight-line scan of logic.
 //!
-//! [`slots`] gives every variable, pin and memory its slot; [`network`] and [`expression`] turn the rungs into
-//! primitives, element by element in the order of the drawing; [`blocks`] has each function block's rule. The code
+//! `slots` gives every variable, pin and memory its slot; `network` and `expression` turn the rungs into
+//! primitives, element by element in the order of the drawing; `blocks` has each function block's rule. The code
 //! that comes out is naive on purpose: nothing here may simplify or reorder, that is for the passes.
 
 mod blocks;

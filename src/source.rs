@@ -74,14 +74,14 @@ impl Source {
     /// # Errors
     /// A source that holds the readable part, with a diagnostic at the first bad byte, when the bytes are not
     /// UTF-8, hold a NUL, or are more than [`MAXIMUM_BYTES`].
-    pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Result<Self, (Self, Diagnostic)> {
+    pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Result<Self, Box<(Self, Diagnostic)>> {
         let name = name.into();
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         if bytes.len() > MAXIMUM_BYTES {
             let problem =
                 Diagnostic::new(Code::FileTooLarge, Span::default(), format!("this file has {} bytes", bytes.len()))
                     .hint(format!("a source may have at most {MAXIMUM_BYTES} bytes"));
-            return Err((Self::new(name, ""), problem));
+            return Err(Box::new((Self::new(name, ""), problem)));
         }
         match std::str::from_utf8(bytes) {
             Err(error) => {
@@ -89,14 +89,14 @@ impl Source {
                 let at = Span::new(good.len(), good.len());
                 let problem =
                     Diagnostic::new(Code::NotText, at, "a byte here is not UTF-8 text").hint("save the file as UTF-8");
-                Err((Self::new(name, good), problem))
+                Err(Box::new((Self::new(name, good), problem)))
             }
             Ok(text) => match text.find('\0') {
                 None => Ok(Self::new(name, text)),
                 Some(at) => {
                     let problem = Diagnostic::new(Code::NotText, Span::new(at, at), "a NUL byte stands here")
                         .hint("this looks like a binary file");
-                    Err((Self::new(name, &text[..at]), problem))
+                    Err(Box::new((Self::new(name, &text[..at]), problem)))
                 }
             },
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::{Failure, load_checked, read_bytes, write_whole};
+use super::{Failure, load_checked, read_source, write_whole};
 use crate::diagnostic::Code;
 use crate::engine::jit::{Jit, host_isa};
 use crate::engine::{clif, disassemble};
@@ -12,7 +12,6 @@ use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
 use crate::opt::PASSES;
-use crate::source::Source;
 
 /// The stage before any pass, for `--after`.
 const LOWER: &str = "lower";
@@ -78,8 +77,7 @@ fn passes_until(after: Option<&str>) -> Result<usize, Failure> {
 }
 
 fn read_map(path: &Path) -> Result<EarlierLayout, Failure> {
-    let source = Source::decode(path.display().to_string(), &read_bytes(path)?)
-        .map_err(|(source, problem)| Failure::diagnostics(&source, &[problem]))?;
+    let source = read_source(path)?;
     map::read_map(&source).map_err(|problem| Failure::diagnostics(&source, &[problem]))
 }
 

@@ -21,8 +21,14 @@ pub(crate) struct Loaded {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// A text file that is no program, such as stimuli or a map.
+pub(crate) fn read_source(path: &Path) -> Result<Source, Failure> {
+    Source::decode(path.display().to_string(), &read_bytes(path)?)
+        .map_err(|undecoded| Failure::diagnostics(&undecoded.0, &[undecoded.1]))
+}
+
 /// The bytes of a file, or of the standard input for `-`; no more than one past [`MAXIMUM_BYTES`].
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let most = MAXIMUM_BYTES as u64 + 1;
     let mut bytes = Vec::new();
     let read = if path == Path::new("-") {
@@ -44,7 +50,7 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     let bytes = read_bytes(path)?;
     let (source, undecoded) = match Source::decode(path.display().to_string(), &bytes) {
         Ok(source) => (source, None),
-        Err((source, problem)) => (source, Some(problem)),
+        Err(undecoded) => (undecoded.0, Some(undecoded.1)),
     };
     drop(bytes);
     let Parsed { program, mut diagnostics } = frontend::parse(&source);

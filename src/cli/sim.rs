@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use rung_runtime::Scan;
 
-use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_bytes};
+use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_source};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
 use crate::engine::interp::Interpreter;
@@ -18,7 +18,6 @@ use crate::opt::optimise;
 use crate::replay::Replay;
 use crate::simulate::decimal::Milliseconds;
 use crate::simulate::{Schedule, Simulation, Stimuli};
-use crate::source::Source;
 use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
 
 /// Runs a program in virtual time and writes what its variables did
@@ -200,11 +199,6 @@ impl Course {
             Self::Replayed(replay) => Period::of(replay.scans.iter().map(|scan| scan.now)),
         }
     }
-}
-
-fn read_source(path: &Path) -> Result<Source, Failure> {
-    Source::decode(path.display().to_string(), &read_bytes(path)?)
-        .map_err(|(source, problem)| Failure::diagnostics(&source, &[problem]))
 }
 
 /// The engine that is traced, and the one that it is compared with.

@@ -12,7 +12,8 @@ use super::{parse, parse_well, print_and_check};
 /// The body of a fuzz target: reads bytes as a file would be read. A program without errors survives printing.
 fn fuzz(bytes: &[u8]) {
     let source = match Source::decode("fuzz.rung", bytes) {
-        Ok(source) | Err((source, _)) => source,
+        Ok(source) => source,
+        Err(undecoded) => undecoded.0,
     };
     let parsed = native::parse(&source);
     for diagnostic in &parsed.diagnostics {
@@ -278,7 +279,7 @@ fn marks_breaks_and_nuls_of_other_systems() {
     assert_eq!(parsed.diagnostics, []);
     assert_eq!(native::print(&parsed.program), native::print(&parse_well(EXAMPLE)));
 
-    let (kept, problem) = Source::decode("x.rung", b"input a\n\0input b").unwrap_err();
+    let (kept, problem) = *Source::decode("x.rung", b"input a\n\0input b").unwrap_err();
     assert_eq!(problem.code, Code::NotText);
     assert_eq!(native::parse(&kept).program.variables.len(), 1);
     let (_, diagnostics) = parse("input a\n\0");
