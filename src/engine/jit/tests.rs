@@ -2,12 +2,12 @@
 
 use rung_runtime::Scan;
 
-use super::{Jit, host_isa};
+use super::{CompileError, Jit, host_isa};
 use crate::elementary::{Elementary, Value};
 use crate::engine::clif::BRANCHING;
 use crate::engine::disassemble;
 use crate::engine::interp::Textbook;
-use crate::logic::{Area, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
+use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
 use crate::opt;
 
 fn compile(program: &Program) -> Jit {
@@ -141,4 +141,38 @@ fn a_rung_of_a_hundred_thousand_contacts_compiles_and_runs() {
     program.layout.slot(coil).write(&mut image, Value::bool(false));
     compile(&program).scan(&mut image, 0);
     assert!(program.layout.slot(coil).read(&image).is_true());
+}
+
+#[test]
+fn a_chunk_that_needs_too_many_values_at_one_time_is_refused_at_once() {
+    let spread = |values: i64| {
+        let mut layout = LayoutBuilder::new();
+        let (ty, initial) = (Elementary::Time, Value::time(0));
+        let slot = Slot { name: "least".into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+        let least = layout.slot(slot);
+        let mut logic = Builder::new("spread", layout.finish(None).expect("a small image"));
+        let now = logic.now();
+        // All are alive at once: the first is used last.
+        let live: Vec<_> = (0..values)
+            .map(|value| {
+                let value = logic.constant(Value::time(value));
+                logic.binary(Binary::Subtract, now, value)
+            })
+            .collect();
+        let all = live.into_iter().rev().reduce(|a, b| logic.binary(Binary::Minimum, a, b)).expect("some");
+        logic.store(least, all);
+        logic.end_section(Origin { label: "r".into(), line: 1 });
+        logic.finish()
+    };
+    let small = spread(1000);
+    let mut image = small.layout.initial_image();
+    compile(&small).scan(&mut image, 5000);
+    assert_eq!(small.layout.slots()[0].read(&image), Value::time(4001));
+    match Jit::compile(&spread(40_000)) {
+        Err(CompileError::Chunk { sections, reason }) => {
+            assert_eq!(sections, 0..1);
+            assert_eq!(reason, "40000 values are needed at one time, and at most 4096 may be");
+        }
+        other => panic!("{other:?}"),
+    }
 }
