@@ -144,6 +144,7 @@ pub fn flags() -> Result<settings::Flags, SetError> {
 pub struct Compiler<'a> {
     program: &'a Program,
     isa: &'a dyn TargetIsa,
+    target: Target,
     context: Context,
     builder_context: FunctionBuilderContext,
 }
@@ -158,7 +159,14 @@ impl<'a> Compiler<'a> {
     /// A compiler of a verified program for a target.
     pub fn new(program: &'a Program, isa: &'a dyn TargetIsa) -> Self {
         debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
-        Self { program, isa, context: Context::new(), builder_context: FunctionBuilderContext::new() }
+        let (context, builder_context) = (Context::new(), FunctionBuilderContext::new());
+        Self { program, isa, target: Target::of(isa), context, builder_context }
+    }
+
+    /// The same, but with code written as for RISC-V, so that what only that target gets can be run in tests here.
+    #[cfg(test)]
+    pub(in crate::engine) fn as_for_riscv64(self) -> Self {
+        Self { target: Target::RISCV64, ..self }
     }
 
     /// Compiles one of the program's [chunks](Program::chunks).
@@ -193,7 +201,7 @@ impl<'a> Compiler<'a> {
         self.context.clear();
         let name = UserFuncName::user(0, u32::try_from(sections.start).unwrap_or(u32::MAX));
         self.context.func = Function::with_name_signature(name, signature(self.isa));
-        lower::chunk(self.program, sections, self.isa, &mut self.context.func, &mut self.builder_context)
+        lower::chunk(self.program, sections, self.isa, self.target, &mut self.context.func, &mut self.builder_context)
     }
 }
 
@@ -270,7 +278,7 @@ pub(crate) fn heading(program: &Program, section: usize, comment: &str) -> Strin
 struct Target {
     /// Whether the low byte of a 4-byte load at any address is the byte there, and the load can be part of AND and OR.
     wide_loads: bool,
-    /// Whether a select becomes a branch, so that masks are wanted.
+    /// Whether a select, and a rotation, becomes a branch, so that masks are wanted.
     select_branches: bool,
     /// How far below and above a pointer an access is short.
     below: u32,
@@ -278,10 +286,12 @@ struct Target {
 }
 
 impl Target {
+    const RISCV64: Self = Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 };
+
     fn of(isa: &dyn TargetIsa) -> Self {
         match isa.triple().architecture {
             Architecture::X86_64 => Self { wide_loads: true, select_branches: false, below: 128, above: 127 },
-            Architecture::Riscv64(_) => Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 },
+            Architecture::Riscv64(_) => Self::RISCV64,
             _ => Self { wide_loads: false, select_branches: false, below: 0, above: 4095 },
         }
     }

@@ -29,10 +29,10 @@ pub(super) fn chunk(
     program: &Program,
     sections: Range<usize>,
     isa: &dyn TargetIsa,
+    target: Target,
     function: &mut Function,
     context: &mut FunctionBuilderContext,
 ) -> Built {
-    let target = Target::of(isa);
     let bases = place::bases(program, sections.clone(), target);
     let mut builder = FunctionBuilder::new(function, context);
     let block = builder.create_block();
