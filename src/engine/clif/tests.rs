@@ -5,7 +5,7 @@ use super::{ALIVE, BRANCHING, Chunk, Compiler, text};
 use crate::elementary::{Elementary, Value};
 use crate::engine::disassemble;
 use crate::engine::jit::host_isa;
-use crate::logic::{Area, Binary, CHUNK_SECTIONS, Builder, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
+use crate::logic::{Area, Binary, Builder, CHUNK_SECTIONS, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
 
 /// A program of sections over `slots` BOOLs, each made by `section`.
 fn booleans(slots: u32, sections: u32, mut section: impl FnMut(&mut Builder, u32, &[SlotId])) -> Program {
