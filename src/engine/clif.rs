@@ -165,7 +165,7 @@ impl<'a> Compiler<'a> {
 
     /// The same, but with code written as for RISC-V, so that what only that target gets can be run in tests here.
     #[cfg(test)]
-    pub(in crate::engine) fn as_for_riscv64(self) -> Self {
+    pub(in crate::engine) fn written_for_riscv64(self) -> Self {
         Self { target: Target::RISCV64, ..self }
     }
 

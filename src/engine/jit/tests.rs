@@ -18,7 +18,7 @@ fn compile(program: &Program) -> Jit {
 /// Code as RISC-V gets it, masks in place of selects, for this machine.
 fn compile_as_for_riscv64(program: &Program) -> Jit {
     let isa = host_isa().expect("a host with a back end");
-    let mut compiler = Compiler::new(program, &*isa).as_for_riscv64();
+    let mut compiler = Compiler::new(program, &*isa).written_for_riscv64();
     let chunks: Result<Vec<_>, _> = program.chunks().into_iter().map(|sections| compiler.chunk(sections)).collect();
     let chunks = chunks.unwrap_or_else(|error| panic!("{}: {error}", program.name));
     let code = Code::install(&chunks, program.layout.size() as usize).expect("executable memory");
