@@ -31,7 +31,7 @@ fn a_long_span_shows_its_ends_however_many_lines_lie_between() {
     let expected = "\
 error[R0201]: here
        ┌─ x.rung:2:1
-       │  \n      2 │ ╭ line
+       │  \n     2 │ ╭ line
      3 │ │ line
      4 │ │ line
      5 │ │ line
