@@ -24,7 +24,7 @@ pub const MAXIMUM_DEPTH: usize = 128;
 
 /// How many words, signs and comments a file may have, those copied to the names of one declaration included. Each makes
 /// at most some hundred bytes of a program, so that no file takes more than a few gigabytes.
-pub const MOST_TOKENS: usize = 1 << 23;
+pub const MOST_TOKENS: usize = 1 << 22;
 
 /// How many diagnostics one run gives before it stops reading.
 pub const MOST_DIAGNOSTICS: usize = 200;
