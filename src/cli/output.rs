@@ -72,8 +72,11 @@ enum Sink {
 }
 
 impl WholeFile {
-    /// Starts a file; nothing is seen of it before [`WholeFile::finish`].
+    /// Starts a file; nothing is seen of it before [`WholeFile::finish`]. A link stays one, and what it points to is
+    /// written.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let linked = path.is_symlink().then(|| path.canonicalize()).and_then(Result::ok);
+        let path = linked.as_deref().unwrap_or(path);
         let create = || -> io::Result<Sink> {
             if path == Path::new("-") {
                 return Ok(Sink::Stdout(BufWriter::new(io::stdout())));
