@@ -5,8 +5,9 @@
 //! output, which timer is idle, timing or expired can be told. Each rule says how. "start + PT <= now" is computed as
 //! "now - start >= PT", which is the same where nothing overflows, and then right as well.
 
-use super::{Rule, Run};
+use super::{Rule, Rules, Run};
 use crate::elementary::{Elementary, Value};
+use crate::ladder::library::StandardBlock::{Tof, Ton, Tp};
 use crate::logic::{Binary, Compare, ValueId};
 
 const IN: usize = 0;
@@ -17,13 +18,13 @@ const PREVIOUS: usize = 0;
 const START: usize = 1;
 const STATES: &[(&str, Elementary)] = &[("previous", Elementary::Bool), ("start", Elementary::Time)];
 
-/// On-delay. Idle while the input was off; else expired while Q is on, else timing.
-pub(super) const TON: Rule = Rule { states: STATES, run: ton };
-/// Off-delay. Timing while the input was off and Q is on; expired while both are off.
-pub(super) const TOF: Rule = Rule { states: STATES, run: tof };
-/// Pulse. Timing while Q is on; else expired while the input was on, else idle.
-pub(super) const TP: Rule = Rule { states: STATES, run: tp };
+pub(super) const RULES: Rules = &[
+    (&[Ton], Rule { states: STATES, run: ton }),
+    (&[Tof], Rule { states: STATES, run: tof }),
+    (&[Tp], Rule { states: STATES, run: tp }),
+];
 
+/// On-delay. Idle while the input was off; else expired while Q is on, else timing.
 fn ton(run: &mut Run<'_>) {
     let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);
@@ -42,6 +43,7 @@ fn ton(run: &mut Run<'_>) {
     run.set_output(ET, new_et);
 }
 
+/// Off-delay. Timing while the input was off and Q is on; expired while both are off.
 fn tof(run: &mut Run<'_>) {
     let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);
@@ -63,6 +65,7 @@ fn tof(run: &mut Run<'_>) {
     run.set_output(ET, new_et);
 }
 
+/// Pulse. Timing while Q is on; else expired while the input was on, else idle.
 fn tp(run: &mut Run<'_>) {
     let (on, was_on, timing) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);

@@ -1,6 +1,6 @@
 //! The standard function blocks, each as the little machine that the semantics describe.
 
-use rung::elementary::{Elementary, Value};
+use rung::elementary::Value;
 use rung::ladder::library::StandardBlock;
 
 /// One instance: its pins and what it remembers.
@@ -45,9 +45,24 @@ impl Instance {
             StandardBlock::Ton => self.on_delay(now),
             StandardBlock::Tof => self.off_delay(now),
             StandardBlock::Tp => self.pulse(now),
-            StandardBlock::Ctu => self.count_up(),
-            StandardBlock::Ctd => self.count_down(),
-            StandardBlock::Ctud => self.count_up_and_down(),
+            StandardBlock::Ctu
+            | StandardBlock::CtuInt
+            | StandardBlock::CtuDint
+            | StandardBlock::CtuLint
+            | StandardBlock::CtuUdint
+            | StandardBlock::CtuUlint => self.count_up(),
+            StandardBlock::Ctd
+            | StandardBlock::CtdInt
+            | StandardBlock::CtdDint
+            | StandardBlock::CtdLint
+            | StandardBlock::CtdUdint
+            | StandardBlock::CtdUlint => self.count_down(),
+            StandardBlock::Ctud
+            | StandardBlock::CtudInt
+            | StandardBlock::CtudDint
+            | StandardBlock::CtudLint
+            | StandardBlock::CtudUdint
+            | StandardBlock::CtudUlint => self.count_up_and_down(),
             StandardBlock::RTrig => {
                 let rises = self.rises(0, 0);
                 self.put_bool(0, rises);
@@ -206,6 +221,7 @@ impl Instance {
     }
 
     fn put_count(&mut self, output: usize, count: i128) {
-        self.outputs[output] = Value::integer(Elementary::Int, count).expect("a count stays between 0 and PV");
+        let ty = self.outputs[output].ty();
+        self.outputs[output] = Value::integer(ty, count).expect("a count stays between 0 and PV");
     }
 }
