@@ -80,6 +80,8 @@ blocks! {
     Sr "SR": ("S1": Bool, "R": Bool) => ("Q1": Bool);
     /// Bistable, reset dominant.
     Rs "RS": ("S": Bool, "R1": Bool) => ("Q1": Bool);
+    /// Semaphore, which one of its users claims and releases.
+    Sema "SEMA": ("CLAIM": Bool, "RELEASE": Bool) => ("BUSY": Bool);
 }
 
 impl StandardBlock {

@@ -52,6 +52,7 @@ const TABLES: &[(&[StandardBlock], &str)] = {
         (&[B::RTrig], include_str!("../blocks/r_trig.csv")),
         (&[B::FTrig], include_str!("../blocks/f_trig.csv")),
         (&[B::Sr], include_str!("../blocks/sr.csv")),
+        (&[B::Sema], include_str!("../blocks/sema.csv")),
         (&[B::Rs], include_str!("../blocks/rs.csv")),
     ]
 };

@@ -77,6 +77,10 @@ impl Instance {
                 let q1 = self.bool(0) || (!self.bool(1) && self.outputs[0].is_true());
                 self.put_bool(0, q1);
             }
+            StandardBlock::Sema => {
+                let taken = self.bool(0) || (self.outputs[0].is_true() && !self.bool(1));
+                self.put_bool(0, taken);
+            }
             StandardBlock::Rs => {
                 let q1 = !self.bool(1) && (self.bool(0) || self.outputs[0].is_true());
                 self.put_bool(0, q1);
