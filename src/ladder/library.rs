@@ -60,6 +60,8 @@ blocks! {
     Tof "TOF": ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
     /// Pulse timer.
     Tp "TP": ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    /// Retentive on-delay timer.
+    Tonr "TONR": ("IN": Bool, "R": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
     /// Up counter.
     Ctu "CTU" Int, CtuInt "CTU_INT" Int, CtuDint "CTU_DINT" Dint, CtuLint "CTU_LINT" Lint,
     CtuUdint "CTU_UDINT" Udint, CtuUlint "CTU_ULINT" Ulint:

@@ -43,6 +43,7 @@ const TABLES: &[(&[StandardBlock], &str)] = {
         (&[B::Ton], include_str!("../blocks/ton.csv")),
         (&[B::Tof], include_str!("../blocks/tof.csv")),
         (&[B::Tp], include_str!("../blocks/tp.csv")),
+        (&[B::Tonr], include_str!("../blocks/tonr.csv")),
         (&[B::Ctu, B::CtuInt, B::CtuDint, B::CtuLint, B::CtuUdint, B::CtuUlint], include_str!("../blocks/ctu.csv")),
         (&[B::Ctd, B::CtdInt, B::CtdDint, B::CtdLint, B::CtdUdint, B::CtdUlint], include_str!("../blocks/ctd.csv")),
         (

@@ -45,6 +45,7 @@ impl Instance {
             StandardBlock::Ton => self.on_delay(now),
             StandardBlock::Tof => self.off_delay(now),
             StandardBlock::Tp => self.pulse(now),
+            StandardBlock::Tonr => self.retentive_on_delay(now),
             StandardBlock::Ctu
             | StandardBlock::CtuInt
             | StandardBlock::CtuDint
@@ -131,6 +132,30 @@ impl Instance {
             self.put_elapsed(0);
         }
         self.previous[0] = input;
+    }
+
+    /// Idle: neither input is on. Timing: IN without R. Expired: until R. `start` is when it last ran.
+    fn retentive_on_delay(&mut self, now: i64) {
+        let was_timing = self.state == State::Timing;
+        if self.bool(1) {
+            self.state = State::Idle;
+            self.put_bool(0, false);
+            self.put_elapsed(0);
+        } else if self.state != State::Expired {
+            self.state = if self.bool(0) { State::Timing } else { State::Idle };
+            if was_timing && self.state == State::Timing {
+                let passed = i128::from(now) - i128::from(self.start);
+                let elapsed = self.output(1) + passed.max(0);
+                let preset = self.integer(2);
+                if elapsed >= preset {
+                    self.state = State::Expired;
+                    self.put_bool(0, true);
+                }
+                let elapsed = i64::try_from(elapsed.min(preset)).expect("PT is a TIME");
+                self.put_elapsed(elapsed);
+            }
+        }
+        self.start = now;
     }
 
     fn begin(&mut self, now: i64) {
