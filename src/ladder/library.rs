@@ -3,7 +3,7 @@
 //! One entry a block, and its rule in one function of `lower`; nothing else must know what pins a block has.
 //! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5.
 
-use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Time, Udint, Ulint};
+use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Real, Time, Udint, Ulint};
 
 /// One input or output of a block.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -84,6 +84,16 @@ blocks! {
     Rs "RS": ("S": Bool, "R1": Bool) => ("Q1": Bool);
     /// Semaphore, which one of its users claims and releases.
     Sema "SEMA": ("CLAIM": Bool, "RELEASE": Bool) => ("BUSY": Bool);
+    /// Integral over time.
+    Integral "INTEGRAL": ("RUN": Bool, "R1": Bool, "XIN": Real, "X0": Real, "CYCLE": Time) => ("Q": Bool, "XOUT": Real);
+    /// Derivative with respect to time.
+    Derivative "DERIVATIVE": ("RUN": Bool, "XIN": Real, "CYCLE": Time) => ("XOUT": Real);
+    /// Three-term controller.
+    Pid "PID": ("AUTO": Bool, "PV": Real, "SP": Real, "X0": Real, "KP": Real, "TR": Real, "TD": Real, "CYCLE": Time) => ("XOUT": Real);
+    /// Ramp from one value to another.
+    Ramp "RAMP": ("RUN": Bool, "X0": Real, "X1": Real, "TR": Time, "CYCLE": Time) => ("BUSY": Bool, "XOUT": Real);
+    /// Two-point switch with a dead band.
+    Hysteresis "HYSTERESIS": ("XIN1": Real, "XIN2": Real, "EPS": Real) => ("Q": Bool);
 }
 
 impl StandardBlock {

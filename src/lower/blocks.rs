@@ -3,6 +3,7 @@
 //! A rule computes as if the block always ran. That a block whose EN is FALSE keeps its outputs and states is
 //! added here, so that no rule needs to know.
 
+mod analog;
 mod bistables;
 mod counters;
 mod edges;
@@ -28,7 +29,7 @@ type Rules = &'static [(&'static [StandardBlock], Rule)];
 
 /// The rule of each block, in the order of [`StandardBlock::ALL`]. A block without one, or with two, does not compile.
 static RULES: [&Rule; StandardBlock::ALL.len()] =
-    ordered(&[bistables::RULES, counters::RULES, edges::RULES, timers::RULES]);
+    ordered(&[analog::RULES, bistables::RULES, counters::RULES, edges::RULES, timers::RULES]);
 
 /// The rule of a block.
 pub(super) fn rule(block: StandardBlock) -> &'static Rule {

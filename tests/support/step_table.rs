@@ -54,6 +54,11 @@ const TABLES: &[(&[StandardBlock], &str)] = {
         (&[B::FTrig], include_str!("../blocks/f_trig.csv")),
         (&[B::Sr], include_str!("../blocks/sr.csv")),
         (&[B::Sema], include_str!("../blocks/sema.csv")),
+        (&[B::Integral], include_str!("../blocks/integral.csv")),
+        (&[B::Derivative], include_str!("../blocks/derivative.csv")),
+        (&[B::Pid], include_str!("../blocks/pid.csv")),
+        (&[B::Ramp], include_str!("../blocks/ramp.csv")),
+        (&[B::Hysteresis], include_str!("../blocks/hysteresis.csv")),
         (&[B::Rs], include_str!("../blocks/rs.csv")),
     ]
 };
@@ -114,6 +119,9 @@ fn names(pins: &'static [Pin]) -> impl Iterator<Item = &'static str> {
 
 /// None where the cell says a number that the type does not hold.
 fn value(ty: Elementary, cell: &str) -> Option<Value> {
+    if ty.is_real() {
+        return Value::real(ty, cell.parse().unwrap_or_else(|error| panic!("{cell}: {error}")));
+    }
     let number = match (cell, ty.range()) {
         ("MIN", Some((least, _))) => least,
         ("MAX", Some((_, greatest))) => greatest,
@@ -139,12 +147,14 @@ impl Case {
 
     /// A program with the block as `b`, an input variable named as the pin for each wired input, and `en`.
     ///
-    /// With `enable`, the power on the block's left is `en` and so EN; without it, that power is the first input.
+    /// With `enable`, the power on the block's left is `en` and so EN; without it, that power is the first input. Of a
+    /// block whose first input is no BOOL it is EN in any case.
     pub(crate) fn program(&self, enable: bool) -> Program {
         let mut program = drawing::program("steps");
         program.variables.push(drawing::variable(VariableClass::Input, "en", Elementary::Bool));
         let mut arguments = Vec::new();
         let inputs = self.block.inputs();
+        let enable = enable || inputs[0].ty != Elementary::Bool;
         for (index, pin) in inputs.iter().enumerate().filter(|(index, _)| *index == 0 || self.wired[*index]) {
             program.variables.push(drawing::variable(VariableClass::Input, &input(pin), pin.ty));
             if enable || index != 0 {
