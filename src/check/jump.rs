@@ -38,9 +38,10 @@ impl Labels {
         labels
     }
 
-    /// The name of a rung that is nearest to one that none has: of equally near ones the first.
+    /// What can be jumped to that is nearest to a name that no rung has.
     fn suggest(&mut self, program: &Program, name: &str) -> Option<String> {
-        let names = program.rungs.iter().filter_map(|rung| rung.name.as_ref()).map(|name| name.text.as_str());
+        let names =
+            program.rungs.iter().filter_map(|rung| rung.name.as_ref()).map(|name| name.text.as_str()).chain(["return"]);
         spelling::nearest(name, names, &mut self.budget).map(str::to_owned)
     }
 
