@@ -5,6 +5,7 @@ mod examples;
 mod jumps;
 mod random;
 mod steps;
+mod straight_line;
 
 #[path = "../support"]
 mod support {
