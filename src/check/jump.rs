@@ -19,6 +19,7 @@ pub(super) struct Labels {
     /// For each of all rungs, how many before it run: its place among those that run, or if it is off, the place of the
     /// next that is not.
     running: Vec<u32>,
+    /// How many run in all.
     all_running: u32,
     budget: Budget,
 }
