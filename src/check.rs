@@ -6,7 +6,7 @@
 //! 1. `declare`: the declared names, their types and addresses, then their initial values.
 //! 2. `collect`: what the rungs declare by use (instances, addresses), and how deep they nest.
 //! 3. `address`: which addresses share storage, and which overlap.
-//! 4. `network`, `block`, `place`, `expression`, `constant`: the rungs, element by element.
+//! 4. `network`, `jump`, `block`, `place`, `expression`, `constant`: the rungs, element by element.
 //! 5. `usage`: what only the whole program shows, such as unused names and double coils.
 //!
 //! Rungs that are off are checked like the others, and what they name counts as used; but they are not in the
@@ -18,6 +18,7 @@ mod collect;
 mod constant;
 mod declare;
 mod expression;
+mod jump;
 mod model;
 mod network;
 mod place;
@@ -32,14 +33,15 @@ mod tests;
 
 pub use collect::MAXIMUM_DEPTH;
 pub use model::{
-    Branch, Call, Checked, Circuit, Element, Expression, ExpressionKind, Input, NodeId, PinId, Place, Rung, Type,
-    Variable, VariableId, Wire,
+    Branch, Call, Checked, Circuit, Element, Expression, ExpressionKind, Input, NodeId, PinId, Place, Rung, RungIndex,
+    Type, Variable, VariableId, Wire,
 };
 pub use report::MOST_REPORTED;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
 
+use jump::Labels;
 use report::Report;
 use scope::Scope;
 use usage::Usage;
@@ -47,7 +49,13 @@ use usage::Usage;
 /// Checks a program: the checked program exactly where there is no error, and everything there is to say about it, in
 /// order of place. It takes time in proportion to the program.
 pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
-    let mut checker = Checker { program, report: Report::default(), scope: Scope::default(), usage: Usage::default() };
+    let mut checker = Checker {
+        program,
+        report: Report::default(),
+        scope: Scope::default(),
+        usage: Usage::default(),
+        labels: Labels::default(),
+    };
     checker.declare_variables();
     let too_deep = checker.collect_uses();
     checker.check_overlaps();
@@ -65,4 +73,5 @@ struct Checker<'p> {
     report: Report,
     scope: Scope,
     usage: Usage,
+    labels: Labels,
 }

@@ -96,6 +96,8 @@ codes! {
     RepeatedBlock = 507 Warning "a block instance that is called more than once",
     EmptyRung = 508 Warning "a rung with nothing to do",
     RetainedInput = 509 Error "an input cannot be retained",
+    BackwardJump = 510 Error "a jump to its own rung or an earlier one",
+    MisplacedJump = 511 Error "a jump where none can stand",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",

@@ -238,6 +238,13 @@ pub enum ElementKind {
     },
     /// Branches in parallel.
     Parallel(Circuit),
+    /// With power, execution goes on at once at a later rung; nothing between is executed. The last of its branch.
+    Jump {
+        /// The name of that rung.
+        target: Name,
+    },
+    /// With power, the scan ends at once. The last of its branch.
+    Return,
 }
 
 /// How a contact reads its operand.

@@ -1,6 +1,6 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
-use super::model::{Call, Input, PinId, Place, Type, VariableId, Wire};
+use super::model::{Call, Circuit, Input, PinId, Place, Type, VariableId, Wire};
 use super::network::{Power, Walk};
 use super::place::list;
 use super::{Checker, types};
@@ -93,7 +93,7 @@ impl Checker<'_> {
         for argument in &call.arguments {
             match &argument.wire {
                 ladder::Wire::Value(value) => drop(self.operand(value)),
-                ladder::Wire::Circuit(circuit) => drop(self.circuit(circuit, Power::Maybe, walk)),
+                ladder::Wire::Circuit(circuit) => drop(self.pin_circuit(circuit, walk)),
                 ladder::Wire::Output(target) => drop(self.write(target)),
             }
         }
@@ -145,7 +145,7 @@ impl Checker<'_> {
             (ladder::Wire::Value(value), Some((_, ty))) => Wire::Value(self.value(value, ty)?),
             (ladder::Wire::Value(value), None) => return self.operand(value).and(None),
             (ladder::Wire::Circuit(circuit), _) => {
-                let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
+                let checked = self.pin_circuit(circuit, walk);
                 let (_, ty) = pin?;
                 if ty != Elementary::Bool {
                     let message =
@@ -159,6 +159,13 @@ impl Checker<'_> {
             (ladder::Wire::Output(_), _) => return None,
         };
         pin.map(|(pin, _)| Input { pin, wire })
+    }
+
+    fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
+        let around = std::mem::replace(&mut walk.in_pin, true);
+        let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
+        walk.in_pin = around;
+        checked
     }
 
     fn output(

@@ -63,6 +63,7 @@ impl Checker<'_> {
                     self.collect_expression(value, depth)?;
                 }
                 ElementKind::Parallel(circuit) => self.collect_circuit(circuit, depth)?,
+                ElementKind::Jump { .. } | ElementKind::Return => {}
             }
         }
         Ok(())

@@ -114,6 +114,17 @@ pub struct Rung {
     pub span: Span,
 }
 
+/// A rung that runs, by its place in [`Checked::rungs`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct RungIndex(pub u32);
+
+impl RungIndex {
+    /// The place as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// A node of a rung, from 0.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct NodeId(pub u32);
@@ -166,6 +177,12 @@ pub enum Element {
     },
     /// Branches in parallel.
     Parallel(Circuit),
+    /// With power, execution goes on at once at a later rung. What stands between is not executed, the later elements
+    /// of this rung among it: nothing is written, no block runs, no memory follows its edge. The last of its branch
+    /// and in no circuit at a pin; there is no power on its right.
+    Jump(RungIndex),
+    /// The same to behind the last rung.
+    Return,
 }
 
 /// A call of a block. In this order: the wired inputs are computed and kept, in the order written; the block runs;

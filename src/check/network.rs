@@ -7,6 +7,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::expression::constant;
+use super::jump::Labels;
 use super::model::{self, NodeId, Place};
 use super::report::clipped;
 use super::{Checker, types};
@@ -51,6 +52,8 @@ pub(super) struct Walk {
     conducts: bool,
     /// What keeps the power from the first coil or assignment that has none.
     barrier: Option<Span>,
+    /// Whether this is a circuit at a pin.
+    pub(super) in_pin: bool,
 }
 
 struct Node {
@@ -66,10 +69,19 @@ struct Node {
 
 impl Walk {
     fn new(rung: usize, enabled: bool) -> Self {
-        Self { rung, enabled, nodes: HashMap::new(), fed: 0, active: false, conducts: false, barrier: None }
+        Self {
+            rung,
+            enabled,
+            nodes: HashMap::new(),
+            fed: 0,
+            active: false,
+            conducts: false,
+            barrier: None,
+            in_pin: false,
+        }
     }
 
-    fn effect(&mut self, power: Power) {
+    pub(super) fn effect(&mut self, power: Power) {
         self.active = true;
         match power {
             Power::Maybe => self.conducts = true,
@@ -84,17 +96,15 @@ impl Checker<'_> {
     /// Checks all rungs but those nested too deeply; the result holds those that run.
     pub(super) fn check_rungs(&mut self, too_deep: &HashSet<usize>) -> Vec<model::Rung> {
         let program = self.program;
-        let mut names: HashMap<String, Span> = HashMap::new();
+        self.labels = Labels::of(program);
         let mut rungs = Vec::with_capacity(program.rungs.len());
         for (index, rung) in program.rungs.iter().enumerate() {
-            if let Some(name) = &rung.name {
-                if let Some(first) = names.get(&name.key()) {
-                    let message = format!("two rungs are called `{}`", name.text);
-                    let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
-                    self.report.push(problem.related(*first, "the first is here"));
-                } else {
-                    names.insert(name.key(), name.span);
-                }
+            if let Some(name) = &rung.name
+                && let Some(first) = self.labels.earlier(name, index)
+            {
+                let message = format!("two rungs are called `{}`", name.text);
+                let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
+                self.report.push(problem.related(first, "the first is here"));
             }
             if !too_deep.contains(&index) {
                 let checked = self.rung(rung, index);
@@ -153,6 +163,7 @@ impl Checker<'_> {
                 elements.extend(element);
                 power = after;
             }
+            self.check_jumps_end(branch);
             let to = branch.to.as_ref().map(|name| self.feed_node(name, power, walk));
             if to.is_none() {
                 right = Some(right.map_or(power, |others| others.or(power)));
@@ -247,6 +258,10 @@ impl Checker<'_> {
                 let (circuit, right) = self.circuit(circuit, left, walk);
                 (Some(model::Element::Parallel(circuit)), right)
             }
+            ElementKind::Jump { target } => {
+                (self.jump(Some(target), element.span, left, walk), left.and_never(element.span))
+            }
+            ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod addresses;
 mod build;
+mod jumps;
 mod limits;
 mod names;
 mod random;

@@ -289,6 +289,8 @@ impl Writer {
             }
             ElementKind::Parallel(inner) => self.circuit(inner),
             ElementKind::Block(call) => self.block(call),
+            ElementKind::Jump { target } => self.push(&format!(">> {}", target.text)),
+            ElementKind::Return => self.push(">> return"),
         }
     }
 

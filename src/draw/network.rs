@@ -131,7 +131,11 @@ impl Builder<'_> {
     fn branch(&mut self, branch: &Branch) -> Line {
         let from = branch.from.as_ref().map(|node| Part::Symbol(Symbol::node_start(&node.text, self.limits)));
         let to = branch.to.as_ref().map(|node| Part::Symbol(Symbol::node_end(&node.text, self.limits)));
-        let (joins_left, joins_right) = (from.is_none(), to.is_none());
+        let ends_in_jump = branch
+            .elements
+            .last()
+            .is_some_and(|last| matches!(last.kind, ElementKind::Jump { .. } | ElementKind::Return));
+        let (joins_left, joins_right) = (from.is_none(), to.is_none() && !ends_in_jump);
         let elements = branch.elements.iter().map(|element| self.element(&element.kind));
         let parts = from.into_iter().chain(elements).chain(to).collect();
         Line::of(parts, joins_left, joins_right)
@@ -147,6 +151,8 @@ impl Builder<'_> {
                 Symbol::boxed(label::assignment(target, value, limits.expression), true)
             }
             ElementKind::Block(call) => self.block(call),
+            ElementKind::Jump { target } => Symbol::jump(&target.text, limits),
+            ElementKind::Return => Symbol::jump("return", limits),
             ElementKind::Parallel(_) if self.depth >= MAXIMUM_DEPTH => Symbol::boxed("…".to_owned(), false),
             ElementKind::Parallel(inner) => return Part::Group(self.circuit(inner)),
         })

@@ -179,6 +179,10 @@ impl Placer {
                 self.wire(y, middle(left), 2 * (x + 1));
                 self.shapes.push(Shape::Node { x: x + 1, y, columns: width, text });
             }
+            SymbolKind::Jump { text } => {
+                self.wire(y, middle(left), 2 * (x + 1));
+                self.text_at(x + 1, y, text, 2 * (x + 1), Align::Left, Role::Name);
+            }
             SymbolKind::Block(block) => {
                 let frame = x + (columns - symbol.columns) / 2 + block.left_columns;
                 self.wire(y, middle(left), middle(frame));

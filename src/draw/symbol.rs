@@ -65,6 +65,7 @@ pub(super) enum SymbolKind {
     Box { text: String },
     NodeStart { text: String },
     NodeEnd { text: String },
+    Jump { text: String },
     Block(BlockBox),
 }
 
@@ -144,6 +145,13 @@ impl Symbol {
         let text = node_text(name, limits);
         let columns = label::width(&text) + 3;
         Self { kind: SymbolKind::NodeEnd { text }, columns, above: 0, below: 0, is_output: false }
+    }
+
+    /// An arrow to where execution goes on, at the end of the wire.
+    pub(super) fn jump(target: &str, limits: Limits) -> Self {
+        let text = format!(">> {}", label::cut_name(target, limits.name.saturating_sub(4).max(3)));
+        let columns = label::width(&text) + 3;
+        Self { kind: SymbolKind::Jump { text }, columns, above: 0, below: 0, is_output: false }
     }
 
     /// A block. `circuit_labels` are what to write at the pins that circuits are wired to, in their order.

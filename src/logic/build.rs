@@ -84,6 +84,18 @@ impl Builder {
         self.push(ty, Op::Store(slot, value));
     }
 
+    /// Sets a slot while a condition, if there is one, is TRUE.
+    pub fn store_if(&mut self, condition: Option<ValueId>, slot: SlotId, value: ValueId) {
+        let value = match condition {
+            None => value,
+            Some(condition) => {
+                let old = self.load(slot);
+                self.select(condition, value, old)
+            }
+        };
+        self.store(slot, value);
+    }
+
     /// An operation on one operand.
     pub fn unary(&mut self, op: Unary, a: ValueId) -> ValueId {
         self.push(self.ty(a), Op::Unary(op, a))

@@ -1,7 +1,7 @@
 //! Function blocks: each block's rule, written once over its pins and states.
 //!
-//! A rule computes as if the block always ran. That a block whose EN is FALSE keeps its outputs and states is
-//! added here, so that no rule needs to know.
+//! A rule computes as if the block always ran. That a block whose EN is FALSE, or that a jump leaves out, keeps its
+//! outputs and states is added here, so that no rule needs to know.
 
 mod analog;
 mod bistables;
@@ -68,7 +68,8 @@ pub(super) struct Run<'a> {
     pub(super) logic: &'a mut Builder,
     slots: &'a InstanceSlots,
     inputs: Vec<ValueId>,
-    enable: Option<ValueId>,
+    /// What it runs under, if it does not always run: EN, and that no jump leaves it out.
+    runs: Option<ValueId>,
 }
 
 impl Run<'_> {
@@ -98,14 +99,7 @@ impl Run<'_> {
     }
 
     fn set(&mut self, slot: SlotId, value: ValueId) {
-        let value = match self.enable {
-            None => value,
-            Some(enable) => {
-                let old = self.logic.load(slot);
-                self.logic.select(enable, value, old)
-            }
-        };
-        self.logic.store(slot, value);
+        self.logic.store_if(self.runs, slot, value);
     }
 
     /// Whether a signal has become TRUE since the block last ran, by a BOOL state that follows it.
@@ -125,7 +119,7 @@ impl Lowering<'_> {
         let mut wire = |lowering: &mut Self, pin: usize, value: ValueId| {
             wired[pin] = Some(value);
             if let Some(slot) = slots.inputs[pin] {
-                lowering.logic.store(slot, value);
+                lowering.store(slot, value);
             }
         };
         if let Some(pin) = call.power_input {
@@ -148,7 +142,8 @@ impl Lowering<'_> {
         });
         let inputs = inputs.collect();
         let enable = if call.power_input.is_none() { Some(left) } else { None };
-        (rule(call.block).run)(&mut Run { logic: &mut self.logic, slots, inputs, enable });
+        let runs = self.unless_jumped(enable);
+        (rule(call.block).run)(&mut Run { logic: &mut self.logic, slots, inputs, runs });
         for (pin, target) in &call.outputs {
             let value = self.logic.load(slots.outputs[*pin]);
             match enable {

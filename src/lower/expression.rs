@@ -58,7 +58,7 @@ impl Lowering<'_> {
                 self.logic.select(value, with, without)
             }
         };
-        self.logic.store(slot, value);
+        self.store(slot, value);
     }
 
     /// Sets a place while a condition holds.

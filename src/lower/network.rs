@@ -64,6 +64,8 @@ impl Lowering<'_> {
                 left
             }
             Element::Parallel(circuit) => self.circuit(circuit, left, nodes),
+            Element::Jump(target) => self.jump(*target, left),
+            Element::Return => self.jump(self.end, left),
         }
     }
 
@@ -101,7 +103,7 @@ impl Lowering<'_> {
     fn edge(&mut self, signal: ValueId) -> ValueId {
         let memory = *self.edges.next().unwrap_or_else(|| unreachable!("every edge of the drawing has a memory"));
         let before = self.logic.load(memory);
-        self.logic.store(memory, signal);
+        self.store(memory, signal);
         let was_off = self.logic.not(before);
         self.logic.and(signal, was_off)
     }

@@ -23,6 +23,8 @@ pub(super) struct Slots {
     pub(super) variables: Vec<VariableSlots>,
     /// The memory of each edge contact and edge coil, in the order of the drawing.
     pub(super) edges: Vec<SlotId>,
+    /// Where execution goes on after the last jump that was taken in this scan, if there are jumps.
+    jump: Option<SlotId>,
 }
 
 /// The slots of one variable.
@@ -51,6 +53,11 @@ impl Slots {
             VariableSlots::Instance(slots) => slots,
             VariableSlots::Value(_) => unreachable!("the checker makes calls of instances only"),
         }
+    }
+
+    /// Where execution goes on after the last jump that was taken in this scan.
+    pub(super) fn jump(&self) -> SlotId {
+        self.jump.unwrap_or_else(|| unreachable!("a program with jumps has the slot"))
     }
 
     /// The slot of a place, without regard to its bit.
@@ -104,7 +111,8 @@ pub(super) fn allocate(
             edges.push(allocator.state(format!("{}#{number}", rung.label), Elementary::Bool, false, line(rung.span)));
         }
     }
-    Ok((Slots { variables, edges }, allocator.layout.finish(earlier)?))
+    let jump = used.jump.map(|span| allocator.state("#jump".to_owned(), Elementary::Udint, false, line(span)));
+    Ok((Slots { variables, edges, jump }, allocator.layout.finish(earlier)?))
 }
 
 struct Allocator {
@@ -170,6 +178,8 @@ struct Used {
     called: Vec<bool>,
     /// For each rung, how many edge contacts and edge coils it has.
     edges: Vec<usize>,
+    /// The first rung with a jump.
+    jump: Option<Span>,
 }
 
 impl Used {
@@ -182,15 +192,20 @@ impl Used {
             kept_inputs: checked.variables().iter().map(pins).collect(),
             called: vec![false; checked.variables().len()],
             edges: Vec::new(),
+            jump: None,
         };
         for rung in checked.rungs() {
             used.edges.push(0);
-            used.circuit(&rung.circuit);
+            if used.circuit(&rung.circuit) {
+                used.jump.get_or_insert(rung.span);
+            }
         }
         used
     }
 
-    fn circuit(&mut self, circuit: &Circuit) {
+    /// Whether there is a jump in the circuit.
+    fn circuit(&mut self, circuit: &Circuit) -> bool {
+        let mut jumps = false;
         for element in circuit.branches.iter().flat_map(|branch| &branch.elements) {
             match element {
                 Element::Contact { kind, operand } => {
@@ -207,9 +222,11 @@ impl Used {
                     self.place(*target);
                     self.expression(value);
                 }
-                Element::Parallel(circuit) => self.circuit(circuit),
+                Element::Parallel(circuit) => jumps |= self.circuit(circuit),
+                Element::Jump(_) | Element::Return => jumps = true,
             }
         }
+        jumps
     }
 
     fn edge(&mut self, is_edge: bool) {
@@ -228,7 +245,7 @@ impl Used {
         for input in &call.inputs {
             match &input.wire {
                 Wire::Value(expression) => self.expression(expression),
-                Wire::Circuit(circuit) => self.circuit(circuit),
+                Wire::Circuit(circuit) => drop(self.circuit(circuit)),
             }
         }
         for (_, target) in &call.outputs {

@@ -2,6 +2,7 @@
 
 mod elements;
 mod examples;
+mod jumps;
 mod random;
 mod steps;
 mod straight_line;

@@ -19,7 +19,7 @@ use crate::support::random_stimuli::Stimuli;
 use crate::support::rig::{Rig, checked};
 
 /// Every kind of element that must occur and change in a run of the usual length.
-const KINDS: [&str; 13] = [
+const KINDS: [&str; 15] = [
     "contact a",
     "contact /a",
     "contact ^a",
@@ -33,6 +33,8 @@ const KINDS: [&str; 13] = [
     "condition {a}",
     "assignment {a := b}",
     "parallel [a | b]",
+    "jump >> r",
+    "jump >> return",
 ];
 
 /// Programs in a run of the usual length, and scans of each.

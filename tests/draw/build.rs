@@ -74,6 +74,10 @@ pub(crate) fn assignment(target: &str, value: Expression) -> Element {
     element(ElementKind::Assignment { target: reference(target), value })
 }
 
+pub(crate) fn jump(text: &str) -> Element {
+    element(ElementKind::Jump { target: name(text) })
+}
+
 pub(crate) fn branch(elements: Vec<Element>) -> Branch {
     Branch { from: None, elements, to: None, span: NOWHERE }
 }

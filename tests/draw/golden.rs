@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rung::draw::{TextOptions, svg, text};
 use rung::elementary::Elementary;
-use rung::ladder::{Area, BinaryOperator, CoilKind, ContactKind, Program, Rung, VariableClass};
+use rung::ladder::{Area, BinaryOperator, CoilKind, ContactKind, ElementKind, Program, Rung, VariableClass};
 use rung::source::Span;
 
 use crate::build::*;
@@ -151,6 +151,28 @@ fn element_rungs() -> Vec<Rung> {
                 assignment("speed", binary(BinaryOperator::Add, read("speed"), number(1))),
             ],
         ),
+    ]
+}
+
+#[test]
+fn jumps() {
+    golden("jumps", 60, jump_rungs());
+}
+
+#[test]
+fn jumps_as_svg() {
+    compare("jumps.svg", &svg(&program("jumps", vec![], jump_rungs())));
+}
+
+fn jump_rungs() -> Vec<Rung> {
+    let leave = || element(ElementKind::Return);
+    vec![
+        rung("r10", "", vec![open("a"), jump("r40")]),
+        rung_of("r20", "", vec![branch(vec![open("a"), leave()]), branch(vec![open("b"), closed("c"), out("x")])]),
+        rung("r30", "", vec![parallel(vec![vec![open("a"), jump("r40")], vec![open("b")]]), out("x")]),
+        rung("r40", "", vec![block("t", "TON", vec![("IN", wired(vec![vec![open("a"), jump("nowhere")]]))])]),
+        rung("r50", "a fault, drawn all the same", vec![open("a"), jump("r60"), out("x")]),
+        rung("r60", "", vec![jump("the_rung_with_the_longest_name_of_this_whole_drawing")]),
     ]
 }
 

@@ -28,6 +28,7 @@ fn any_simple_element() -> impl Strategy<Value = Element> {
         2 => (any_name(), prop::sample::select(coils.to_vec())).prop_map(|(name, kind)| coil(kind, &name)),
         1 => any_name().prop_map(|name| condition(binary(BinaryOperator::Less, read(&name), number(7)))),
         1 => any_name().prop_map(|name| assignment(&name, number(12_345))),
+        1 => any_name().prop_map(|name| jump(&name)),
     ]
 }
 
@@ -85,6 +86,8 @@ fn names(circuit: &Circuit, found: &mut Vec<String>) {
                     }
                 }
                 ElementKind::Parallel(inner) => names(inner, found),
+                ElementKind::Jump { target } => found.push(target.text.clone()),
+                ElementKind::Return => {}
                 ElementKind::Block(call) => {
                     found.push(call.instance.text.clone());
                     for argument in &call.arguments {
@@ -160,10 +163,11 @@ fn assert_wired(picture: &str) {
     }
 }
 
-/// The circuit with all nodes taken away.
+/// The circuit with all nodes taken away, and the jumps, at which wires end too.
 fn without_nodes(circuit: &mut Circuit) {
     for branch in &mut circuit.branches {
         (branch.from, branch.to) = (None, None);
+        branch.elements.retain(|element| !matches!(element.kind, ElementKind::Jump { .. }));
         for element in &mut branch.elements {
             match &mut element.kind {
                 ElementKind::Parallel(inner) => without_nodes(inner),
@@ -209,7 +213,7 @@ proptest! {
     }
 
     #[test]
-    fn without_nodes_no_wire_has_a_loose_end(mut program in any_program(true), width in 20usize..160) {
+    fn without_nodes_and_jumps_no_wire_has_a_loose_end(mut program in any_program(true), width in 20usize..160) {
         program.rungs.iter_mut().for_each(|rung| without_nodes(&mut rung.circuit));
         assert_wired(&text(&program, &TextOptions { width }));
     }

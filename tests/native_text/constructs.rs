@@ -37,6 +37,8 @@ fn brief(kind: &ElementKind) -> String {
             call.power_output.as_ref().map_or("", |name| &name.text)
         ),
         ElementKind::Condition(_) => "condition".to_owned(),
+        ElementKind::Jump { target } => format!("jump {}", target.text),
+        ElementKind::Return => "return".to_owned(),
         ElementKind::Assignment { target, .. } => format!("assign {}", reference_brief(target)),
         ElementKind::Parallel(circuit) => {
             let branches: Vec<String> =
@@ -330,4 +332,12 @@ fn comments_know_whether_they_stand_alone() {
     let program = parse_well("--a\ninput x -- b \n  --\tc\r\n--- d");
     let brief: Vec<_> = program.comments.iter().map(|comment| (comment.text.as_str(), comment.own_line)).collect();
     assert_eq!(brief, [("a", true), ("b", false), ("c", true), ("- d", true)]);
+}
+
+#[test]
+fn two_arrows_jump_to_a_rung_or_return() {
+    let text = briefs(elements("[ a >> r40 | >>R40 | >> `a b` ] >> Return").iter());
+    assert_eq!(text, "[Open a, jump r40|jump R40|jump a b], return");
+    assert_eq!(briefs(elements(">> `return`").iter()), "jump return");
+    assert_eq!(briefs(elements(">> off").iter()), "jump off");
 }

@@ -13,7 +13,7 @@ fn name() -> impl Strategy<Value = Name> {
     prop_oneof![
         4 => "[a-zA-Z_][a-zA-Z0-9_]{0,8}",
         1 => "[a-zA-Z_]{20,40}",
-        1 => prop::sample::select(vec!["s", "R", "off", "at", "retain", "rung", "Not", "TRUE", "task", "T"])
+        1 => prop::sample::select(vec!["s", "R", "off", "at", "retain", "rung", "Not", "TRUE", "task", "T", "Return"])
             .prop_map(str::to_owned),
         1 => "[^`\n\r\0]{1,6}",
     ]
@@ -96,6 +96,8 @@ fn simple_element() -> impl Strategy<Value = ElementKind> {
         2 => (prop::sample::select(coil), reference()).prop_map(|(kind, target)| ElementKind::Coil { kind, target }),
         1 => expression().prop_map(ElementKind::Condition),
         1 => (reference(), expression()).prop_map(|(target, value)| ElementKind::Assignment { target, value }),
+        1 => name().prop_map(|target| ElementKind::Jump { target }),
+        1 => Just(ElementKind::Return),
     ]
 }
 

@@ -77,6 +77,7 @@ impl Coverage {
                         self.add_expression(value);
                     }
                     ElementKind::Parallel(circuit) => self.add_circuit(circuit),
+                    ElementKind::Jump { .. } | ElementKind::Return => {}
                     ElementKind::Block(call) => {
                         self.saw_if(call.power_output.is_some(), "call with a chosen power output");
                         for argument in &call.arguments {

@@ -13,7 +13,7 @@ mod walk;
 
 use std::collections::HashMap;
 
-use rung::check::{Checked, PinId, Place, Type, VariableId};
+use rung::check::{Checked, Element, PinId, Place, Type, VariableId};
 use rung::elementary::Value;
 use rung::ladder::key;
 
@@ -37,10 +37,12 @@ pub(crate) struct Oracle<'a> {
     values: Vec<Value>,
     /// The block of each variable that is an instance.
     instances: Vec<Option<Instance>>,
-    /// What each contact and coil that sees edges remembers, in the order in which a scan comes to them.
-    memories: Vec<bool>,
-    /// One for each element, in the same order.
+    /// What each contact and coil that sees edges remembers, once a scan came to it. An element is known by where it
+    /// lies in the program, which is not moved meanwhile.
+    memories: HashMap<*const Element, bool>,
+    /// One for each element that a scan came to, in the order of the first times.
     activities: Vec<Activity>,
+    places_of_activities: HashMap<*const Element, usize>,
     names: Vec<String>,
     places: HashMap<String, Place>,
 }
@@ -52,8 +54,9 @@ impl<'a> Oracle<'a> {
             checked,
             values: checked.variables().iter().map(|variable| variable.initial).collect(),
             instances: Vec::new(),
-            memories: Vec::new(),
+            memories: HashMap::new(),
             activities: Vec::new(),
+            places_of_activities: HashMap::new(),
             names: Vec::new(),
             places: HashMap::new(),
         };
@@ -102,7 +105,7 @@ impl<'a> Oracle<'a> {
         self.write(self.place(name), value);
     }
 
-    /// How often each element changed so far, in the order in which a scan comes to them.
+    /// How often each element changed so far, in the order in which scans first came to them.
     pub(crate) fn activities(&self) -> &[Activity] {
         &self.activities
     }

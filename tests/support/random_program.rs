@@ -6,6 +6,7 @@
 mod circuit;
 mod declaration;
 mod expression;
+mod jump;
 
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
@@ -36,6 +37,7 @@ pub(crate) fn random_program(seed: u64) -> Program {
         let place = generator.program.rungs.len();
         generator.rung(place);
     }
+    generator.add_jumps();
     generator.program
 }
 

@@ -195,6 +195,15 @@ pub(super) fn assign(target: &str, value: Expression) -> Element {
     element(ElementKind::Assignment { target: reference(target), value }, target)
 }
 
+/// `>> name`, pointed at as a whole.
+pub(super) fn jump(text: &str) -> Element {
+    element(ElementKind::Jump { target: name(text) }, format!(">> {text}"))
+}
+
+pub(super) fn leave() -> Element {
+    element(ElementKind::Return, ">> return")
+}
+
 pub(super) fn branch(elements: Vec<Element>) -> Branch {
     Branch { from: None, elements, to: None, span: span("branch") }
 }

@@ -20,7 +20,7 @@ pub(super) fn count(checked: &Checked) -> Counts {
         Element::Coil { .. } => counts.coils += 1,
         Element::Condition(_) | Element::Assignment { .. } => counts.boxes += 1,
         Element::Call(_) => counts.blocks += 1,
-        Element::Parallel(_) => {}
+        Element::Parallel(_) | Element::Jump(_) | Element::Return => {}
     });
     counts
 }
@@ -37,8 +37,12 @@ pub(super) fn visit<'p>(checked: &'p Checked, mut see: impl FnMut(&'p Element)) 
                     Wire::Circuit(circuit) => Some(circuit),
                     Wire::Value(_) => None,
                 })),
-                Element::Contact { .. } | Element::Coil { .. } | Element::Condition(_) | Element::Assignment { .. } => {
-                }
+                Element::Contact { .. }
+                | Element::Coil { .. }
+                | Element::Condition(_)
+                | Element::Assignment { .. }
+                | Element::Jump(_)
+                | Element::Return => {}
             }
         }
     }

@@ -4,7 +4,9 @@ use rung_runtime::Scan;
 
 use super::{Interpreter, Textbook};
 use crate::elementary::{Elementary, Value};
-use crate::logic::{Area, Binary, Builder, Compare, LayoutBuilder, Origin, Program, Slot, SlotId, ValueId, random};
+use crate::logic::{
+    Area, Binary, Builder, CHUNK_SECTIONS, Compare, LayoutBuilder, Origin, Program, Slot, SlotId, ValueId, random,
+};
 
 #[test]
 fn both_interpreters_agree_on_the_whole_image() {
@@ -108,6 +110,27 @@ fn a_store_of_what_the_slot_holds_costs_nothing() {
         }
     });
     assert_eq!(gates_and_steps(&program), (0, 0));
+}
+
+#[test]
+fn a_constant_is_the_same_where_something_wider_lay_before() {
+    let types = [Elementary::Lint, Elementary::Lint, Elementary::Int, Elementary::Int];
+    let program = program(&types, |builder, slots| {
+        let [wide, other] = [0, 1].map(|index| builder.load(slots[index]));
+        let sum = builder.binary(Binary::Add, wide, other);
+        let chosen = builder.binary(Binary::Subtract, sum, wide);
+        builder.store(slots[0], chosen);
+        builder.end_section(Origin { label: "wide".to_owned(), line: 1 });
+        // The next chunk uses the same cells.
+        for _ in 1..CHUNK_SECTIONS {
+            builder.end_section(Origin { label: "empty".to_owned(), line: 1 });
+        }
+        let [a, b] = [2, 3].map(|index| builder.load(slots[index]));
+        let holds = builder.bool(true);
+        let first = builder.select(holds, a, b);
+        builder.store(slots[3], first);
+    });
+    assert_eq!(gates_and_steps(&program).0, 1);
 }
 
 #[test]

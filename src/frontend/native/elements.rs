@@ -28,6 +28,7 @@ impl Parser<'_> {
             },
             Kind::LeftParenthesis => self.coil()?,
             Kind::LeftBrace => self.braces()?,
+            Kind::Jump => self.jump()?,
             Kind::Name | Kind::QuotedName => self.contact_or_block()?,
             _ => self.contact()?,
         };
@@ -74,7 +75,6 @@ impl Parser<'_> {
     fn no_element(&mut self, span: Span) -> Parse<ElementKind> {
         let problem = self.unexpected("an element");
         let hint = match self.token.kind {
-            Kind::Jump => "jumps are kept for a later version of the language",
             Kind::Assign => "an assignment stands in braces: {name := value}",
             Kind::Equal | Kind::NotEqual | Kind::Less | Kind::LessOrEqual | Kind::GreaterOrEqual => {
                 "a comparison stands in braces: {a > b}"
@@ -149,6 +149,16 @@ impl Parser<'_> {
         };
         self.close(Kind::RightBrace, open, "braces hold one expression or one assignment")?;
         Ok(kind)
+    }
+
+    /// `>> name`, `>> return`
+    fn jump(&mut self) -> Parse<ElementKind> {
+        self.advance();
+        if self.at_word("return") {
+            self.advance();
+            return Ok(ElementKind::Return);
+        }
+        Ok(ElementKind::Jump { target: self.name("the name of a rung, or `return`")? })
     }
 
     /// What starts with a name: a block if a `:` or a touching `(` follows, else a contact.

@@ -68,7 +68,7 @@ pub(super) enum Kind {
     Greater,
     /// `>=`
     GreaterOrEqual,
-    /// `>>`, kept for jumps
+    /// `>>`
     Jump,
     /// `+`
     Plus,

@@ -32,7 +32,7 @@ impl Generator {
         }
     }
 
-    fn contact(&mut self) -> Element {
+    pub(super) fn contact(&mut self) -> Element {
         use ContactKind::{Closed, Falling, Open, Rising};
         let kind = *self.dice.pick(&[Open, Open, Open, Closed, Closed, Rising, Falling]);
         let constant = self.dice.percent(3).then(|| boolean(self.dice.percent(70)));

@@ -207,7 +207,7 @@ pub(super) fn simple_argument(argument: &Argument) -> Option<String> {
     }
 }
 
-/// A contact, a coil or braces; `None` for what has circuits or arguments in it.
+/// A contact, a coil, braces or a jump; `None` for what has circuits or arguments in it.
 pub(super) fn simple_element(element: &Element) -> Option<String> {
     Some(match &element.kind {
         ElementKind::Contact { kind, operand } => {
@@ -232,6 +232,12 @@ pub(super) fn simple_element(element: &Element) -> Option<String> {
         }
         ElementKind::Condition(condition) => format!("{{{}}}", expression(condition)),
         ElementKind::Assignment { target, value } => format!("{{{} := {}}}", reference(target), expression(value)),
+        ElementKind::Jump { target } => {
+            // Bare, this name would leave the program.
+            let is_return = target.text.eq_ignore_ascii_case("return");
+            format!(">> {}", if is_return { format!("`{}`", target.text).into() } else { name(&target.text) })
+        }
+        ElementKind::Return => ">> return".to_owned(),
         ElementKind::Block(_) | ElementKind::Parallel(_) => return None,
     })
 }
