@@ -108,7 +108,7 @@ impl Oracle<'_> {
         }
     }
 
-    fn saw(&mut self, element: &Element, seen: Vec<bool>) {
+    fn saw(&mut self, element: &Element, seen: Vec<Value>) {
         let next = self.activities.len();
         let place = *self.places_of_activities.entry(element).or_insert(next);
         if place == next {
