@@ -68,7 +68,7 @@ pub(super) fn unary_domain(op: UnaryOperator) -> Domain {
 /// A type's name, or other words, with its indefinite article.
 pub(super) fn with_article(words: &str) -> String {
     // Those that are spelled out begin with a vowel's sound.
-    let vowel = matches!(words, "INT" | "LINT" | "LREAL" | "LWORD" | "R_TRIG" | "F_TRIG" | "SR" | "RS");
+    let vowel = matches!(words, "INT" | "INTEGRAL" | "LINT" | "LREAL" | "LWORD" | "R_TRIG" | "F_TRIG" | "SR" | "RS");
     format!("{} {words}", if vowel || words.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" })
 }
 

@@ -3,7 +3,7 @@
 //! One entry a block, and its rule in one function of `lower`; nothing else must know what pins a block has.
 //! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5.
 
-use crate::elementary::Elementary::{self, Bool, Int, Time};
+use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Real, Time, Udint, Ulint};
 
 /// One input or output of a block.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -18,31 +18,36 @@ const fn pin(name: &'static str, ty: Elementary) -> Pin {
     Pin { name, ty }
 }
 
+macro_rules! pins {
+    (($($name:literal: $ty:ident),*)) => { &[$(pin($name, $ty)),*] };
+}
+
+// A row is one rule; its blocks differ in nothing but the type that the row calls COUNT.
 macro_rules! blocks {
-    ($($(#[$doc:meta])* $variant:ident $name:literal ($($input:literal: $input_type:ident),*) => ($($output:literal: $output_type:ident),*);)*) => {
+    ($(#[$doc:meta] $($variant:ident $name:literal $($count:ident)?),+: $inputs:tt => $outputs:tt;)*) => {
         /// A standard function block.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
         pub enum StandardBlock {
-            $($(#[$doc])* $variant,)*
+            $($(#[$doc] $variant,)+)*
         }
 
         impl StandardBlock {
-            /// Every block.
-            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+            /// Every block, in the order of the enumeration.
+            pub const ALL: &'static [Self] = &[$($(Self::$variant,)+)*];
 
             /// Its type name, as the standard spells it.
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name,)* }
+                match self { $($(Self::$variant => $name,)+)* }
             }
 
             /// Its inputs, in order.
             pub const fn inputs(self) -> &'static [Pin] {
-                match self { $(Self::$variant => const { &[$(pin($input, $input_type),)*] },)* }
+                match self { $($(Self::$variant => const { $(const COUNT: Elementary = $count;)? pins!($inputs) },)+)* }
             }
 
             /// Its outputs, in order.
             pub const fn outputs(self) -> &'static [Pin] {
-                match self { $(Self::$variant => const { &[$(pin($output, $output_type),)*] },)* }
+                match self { $($(Self::$variant => const { $(const COUNT: Elementary = $count;)? pins!($outputs) },)+)* }
             }
         }
     };
@@ -50,25 +55,45 @@ macro_rules! blocks {
 
 blocks! {
     /// On-delay timer.
-    Ton "TON" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    Ton "TON": ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
     /// Off-delay timer.
-    Tof "TOF" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    Tof "TOF": ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
     /// Pulse timer.
-    Tp "TP" ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    Tp "TP": ("IN": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
+    /// Retentive on-delay timer.
+    Tonr "TONR": ("IN": Bool, "R": Bool, "PT": Time) => ("Q": Bool, "ET": Time);
     /// Up counter.
-    Ctu "CTU" ("CU": Bool, "R": Bool, "PV": Int) => ("Q": Bool, "CV": Int);
+    Ctu "CTU" Int, CtuInt "CTU_INT" Int, CtuDint "CTU_DINT" Dint, CtuLint "CTU_LINT" Lint,
+    CtuUdint "CTU_UDINT" Udint, CtuUlint "CTU_ULINT" Ulint:
+        ("CU": Bool, "R": Bool, "PV": COUNT) => ("Q": Bool, "CV": COUNT);
     /// Down counter.
-    Ctd "CTD" ("CD": Bool, "LD": Bool, "PV": Int) => ("Q": Bool, "CV": Int);
+    Ctd "CTD" Int, CtdInt "CTD_INT" Int, CtdDint "CTD_DINT" Dint, CtdLint "CTD_LINT" Lint,
+    CtdUdint "CTD_UDINT" Udint, CtdUlint "CTD_ULINT" Ulint:
+        ("CD": Bool, "LD": Bool, "PV": COUNT) => ("Q": Bool, "CV": COUNT);
     /// Up-down counter.
-    Ctud "CTUD" ("CU": Bool, "CD": Bool, "R": Bool, "LD": Bool, "PV": Int) => ("QU": Bool, "QD": Bool, "CV": Int);
+    Ctud "CTUD" Int, CtudInt "CTUD_INT" Int, CtudDint "CTUD_DINT" Dint, CtudLint "CTUD_LINT" Lint,
+    CtudUdint "CTUD_UDINT" Udint, CtudUlint "CTUD_ULINT" Ulint:
+        ("CU": Bool, "CD": Bool, "R": Bool, "LD": Bool, "PV": COUNT) => ("QU": Bool, "QD": Bool, "CV": COUNT);
     /// Rising edge.
-    RTrig "R_TRIG" ("CLK": Bool) => ("Q": Bool);
+    RTrig "R_TRIG": ("CLK": Bool) => ("Q": Bool);
     /// Falling edge.
-    FTrig "F_TRIG" ("CLK": Bool) => ("Q": Bool);
+    FTrig "F_TRIG": ("CLK": Bool) => ("Q": Bool);
     /// Bistable, set dominant.
-    Sr "SR" ("S1": Bool, "R": Bool) => ("Q1": Bool);
+    Sr "SR": ("S1": Bool, "R": Bool) => ("Q1": Bool);
     /// Bistable, reset dominant.
-    Rs "RS" ("S": Bool, "R1": Bool) => ("Q1": Bool);
+    Rs "RS": ("S": Bool, "R1": Bool) => ("Q1": Bool);
+    /// Semaphore, which one of its users claims and releases.
+    Sema "SEMA": ("CLAIM": Bool, "RELEASE": Bool) => ("BUSY": Bool);
+    /// Integral over time.
+    Integral "INTEGRAL": ("RUN": Bool, "R1": Bool, "XIN": Real, "X0": Real, "CYCLE": Time) => ("Q": Bool, "XOUT": Real);
+    /// Derivative with respect to time.
+    Derivative "DERIVATIVE": ("RUN": Bool, "XIN": Real, "CYCLE": Time) => ("XOUT": Real);
+    /// Three-term controller.
+    Pid "PID": ("AUTO": Bool, "PV": Real, "SP": Real, "X0": Real, "KP": Real, "TR": Real, "TD": Real, "CYCLE": Time) => ("XOUT": Real);
+    /// Ramp from one value to another.
+    Ramp "RAMP": ("RUN": Bool, "X0": Real, "X1": Real, "TR": Time, "CYCLE": Time) => ("BUSY": Bool, "XOUT": Real);
+    /// Two-point switch with a dead band.
+    Hysteresis "HYSTERESIS": ("XIN1": Real, "XIN2": Real, "EPS": Real) => ("Q": Bool);
 }
 
 impl StandardBlock {

@@ -3,6 +3,7 @@
 //! A rule computes as if the block always ran. That a block whose EN is FALSE keeps its outputs and states is
 //! added here, so that no rule needs to know.
 
+mod analog;
 mod bistables;
 mod counters;
 mod edges;
@@ -23,20 +24,42 @@ pub(super) struct Rule {
     pub(super) run: fn(&mut Run<'_>),
 }
 
-/// The rule of each block.
+/// The blocks of one file, with the rule that each of a group follows.
+type Rules = &'static [(&'static [StandardBlock], Rule)];
+
+/// The rule of each block, in the order of [`StandardBlock::ALL`]. A block without one, or with two, does not compile.
+static RULES: [&Rule; StandardBlock::ALL.len()] =
+    ordered(&[analog::RULES, bistables::RULES, counters::RULES, edges::RULES, timers::RULES]);
+
+/// The rule of a block.
 pub(super) fn rule(block: StandardBlock) -> &'static Rule {
-    match block {
-        StandardBlock::Ton => &timers::TON,
-        StandardBlock::Tof => &timers::TOF,
-        StandardBlock::Tp => &timers::TP,
-        StandardBlock::Ctu => &counters::CTU,
-        StandardBlock::Ctd => &counters::CTD,
-        StandardBlock::Ctud => &counters::CTUD,
-        StandardBlock::RTrig => &edges::R_TRIG,
-        StandardBlock::FTrig => &edges::F_TRIG,
-        StandardBlock::Sr => &bistables::SR,
-        StandardBlock::Rs => &bistables::RS,
+    RULES[block as usize]
+}
+
+const fn ordered(files: &[Rules]) -> [&'static Rule; StandardBlock::ALL.len()] {
+    let mut found: [Option<&Rule>; StandardBlock::ALL.len()] = [None; StandardBlock::ALL.len()];
+    // A constant function has no `for`.
+    let mut file = 0;
+    while file < files.len() {
+        let mut group = 0;
+        while group < files[file].len() {
+            let (blocks, rule) = &files[file][group];
+            let mut block = 0;
+            while block < blocks.len() {
+                assert!(found[blocks[block] as usize].replace(rule).is_none(), "a block has two rules");
+                block += 1;
+            }
+            group += 1;
+        }
+        file += 1;
     }
+    let mut rules = [found[0].expect("a block has no rule"); StandardBlock::ALL.len()];
+    let mut block = 0;
+    while block < rules.len() {
+        rules[block] = found[block].expect("a block has no rule");
+        block += 1;
+    }
+    rules
 }
 
 /// One run of a block: what its rule computes with. Pins and states are named by their place in their list.

@@ -1,7 +1,7 @@
 //! The step tables of all blocks, as programs on every engine.
 
 use crate::support::rig::{Rig, checked};
-use crate::support::step_table::{Case, TABLES, cases};
+use crate::support::step_table::{Case, all_cases};
 
 #[test]
 fn every_engine_does_what_the_step_tables_say_with_enable() {
@@ -15,10 +15,6 @@ fn every_engine_does_what_the_step_tables_say_with_power_as_the_first_input() {
     for case in all_cases().filter(|case| !case.uses_enable()) {
         run(&case, false);
     }
-}
-
-fn all_cases() -> impl Iterator<Item = Case> {
-    TABLES.into_iter().flat_map(|(block, table)| cases(block, table))
 }
 
 fn run(case: &Case, enable: bool) {

@@ -4,6 +4,7 @@
 //! are drawn, timers as machines with three states, no primitive operation anywhere. It must share no code with
 //! `lower`, `logic` or the engines, for it is what they are tested against. It is slow, and may be.
 
+mod analog;
 mod block;
 mod expression;
 #[cfg(test)]
@@ -18,14 +19,15 @@ use rung::ladder::key;
 
 pub(crate) use block::Instance;
 
-/// How often the power on the right of one element, or for a block any of its BOOL outputs, changed.
+/// How often the power on the right of one element changed; or for a block any of its BOOL outputs, or any output if
+/// it has no BOOL.
 #[derive(Clone, Debug)]
 pub(crate) struct Activity {
     /// What the element is, as a coverage table names it.
     pub kind: String,
     /// How often it changed from one scan to the next.
     pub toggles: u64,
-    last: Vec<bool>,
+    last: Vec<Value>,
 }
 
 /// A program that is being evaluated.

@@ -36,70 +36,100 @@ pub(crate) struct Case {
     pub wired: Vec<bool>,
 }
 
-/// The tables of all blocks.
-pub(crate) const TABLES: [(StandardBlock, &str); 10] = [
-    (StandardBlock::Ton, include_str!("../blocks/ton.csv")),
-    (StandardBlock::Tof, include_str!("../blocks/tof.csv")),
-    (StandardBlock::Tp, include_str!("../blocks/tp.csv")),
-    (StandardBlock::Ctu, include_str!("../blocks/ctu.csv")),
-    (StandardBlock::Ctd, include_str!("../blocks/ctd.csv")),
-    (StandardBlock::Ctud, include_str!("../blocks/ctud.csv")),
-    (StandardBlock::RTrig, include_str!("../blocks/r_trig.csv")),
-    (StandardBlock::FTrig, include_str!("../blocks/f_trig.csv")),
-    (StandardBlock::Sr, include_str!("../blocks/sr.csv")),
-    (StandardBlock::Rs, include_str!("../blocks/rs.csv")),
-];
+/// The tables of all blocks, each with those that follow it.
+const TABLES: &[(&[StandardBlock], &str)] = {
+    use StandardBlock as B;
+    &[
+        (&[B::Ton], include_str!("../blocks/ton.csv")),
+        (&[B::Tof], include_str!("../blocks/tof.csv")),
+        (&[B::Tp], include_str!("../blocks/tp.csv")),
+        (&[B::Tonr], include_str!("../blocks/tonr.csv")),
+        (&[B::Ctu, B::CtuInt, B::CtuDint, B::CtuLint, B::CtuUdint, B::CtuUlint], include_str!("../blocks/ctu.csv")),
+        (&[B::Ctd, B::CtdInt, B::CtdDint, B::CtdLint, B::CtdUdint, B::CtdUlint], include_str!("../blocks/ctd.csv")),
+        (
+            &[B::Ctud, B::CtudInt, B::CtudDint, B::CtudLint, B::CtudUdint, B::CtudUlint],
+            include_str!("../blocks/ctud.csv"),
+        ),
+        (&[B::RTrig], include_str!("../blocks/r_trig.csv")),
+        (&[B::FTrig], include_str!("../blocks/f_trig.csv")),
+        (&[B::Sr], include_str!("../blocks/sr.csv")),
+        (&[B::Sema], include_str!("../blocks/sema.csv")),
+        (&[B::Integral], include_str!("../blocks/integral.csv")),
+        (&[B::Derivative], include_str!("../blocks/derivative.csv")),
+        (&[B::Pid], include_str!("../blocks/pid.csv")),
+        (&[B::Ramp], include_str!("../blocks/ramp.csv")),
+        (&[B::Hysteresis], include_str!("../blocks/hysteresis.csv")),
+        (&[B::Rs], include_str!("../blocks/rs.csv")),
+    ]
+};
 
-/// The cases of a table.
+/// The cases of all tables.
+pub(crate) fn all_cases() -> impl Iterator<Item = Case> {
+    TABLES.iter().flat_map(|(blocks, table)| blocks.iter().flat_map(|block| cases(*block, table)))
+}
+
+/// The cases of a table whose numbers a block can hold: a table for several types may have some for a few only.
 ///
 /// # Panics
 /// When the table is not one for that block.
-pub(crate) fn cases(block: StandardBlock, table: &str) -> Vec<Case> {
+fn cases(block: StandardBlock, table: &str) -> Vec<Case> {
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(table.as_bytes());
     let expected = ["case", "time_ms", "EN"].into_iter().chain(names(block.inputs())).chain(names(block.outputs()));
     let expected: Vec<&str> = expected.chain(["rule"]).collect();
     assert_eq!(reader.headers().expect("a header").iter().collect::<Vec<_>>(), expected, "{}", block.name());
-    let mut cases: Vec<Case> = Vec::new();
+    // Whether all numbers of a case are of the block's types, beside the case.
+    let mut cases: Vec<(Case, bool)> = Vec::new();
     let mut current = String::new();
     for row in reader.records() {
         let row = row.unwrap_or_else(|error| panic!("{}: {error}", block.name()));
         if row[0] != current || cases.is_empty() {
             current = row[0].to_owned();
-            cases.push(Case { block, steps: Vec::new(), wired: vec![false; block.inputs().len()] });
+            cases.push((Case { block, steps: Vec::new(), wired: vec![false; block.inputs().len()] }, true));
         }
-        let case = cases.last_mut().expect("one was begun");
+        let (case, fits) = cases.last_mut().expect("one was begun");
         let (inputs, outputs) = (block.inputs(), block.outputs());
         let mut values = Vec::new();
         for (index, pin) in inputs.iter().enumerate() {
             let cell = &row[3 + index];
             let last = case.steps.last().map_or(Value::default_of(pin.ty), |step| step.inputs[index]);
-            values.push(if cell.is_empty() { last } else { value(pin.ty, cell) });
+            let given = if cell.is_empty() { Some(last) } else { value(pin.ty, cell) };
+            *fits &= given.is_some();
+            values.push(given.unwrap_or(last));
             case.wired[index] |= !cell.is_empty();
         }
         let line = row.position().map_or(0, csv::Position::line);
         let first_output = 3 + inputs.len();
+        let expected = outputs.iter().zip(row.iter().skip(first_output)).map(|(pin, cell)| value(pin.ty, cell));
+        let outputs: Option<Vec<Value>> = expected.collect();
+        *fits &= outputs.is_some();
         case.steps.push(Step {
             now: nanoseconds(&row[1]),
             enabled: &row[2] != "0",
             inputs: values,
-            outputs: outputs.iter().enumerate().map(|(index, pin)| value(pin.ty, &row[first_output + index])).collect(),
-            rule: format!("{}, line {line}, {current}: {}", block.name(), &row[first_output + outputs.len()]),
+            outputs: outputs.unwrap_or_default(),
+            rule: format!("{}, line {line}, {current}: {}", block.name(), &row[row.len() - 1]),
         });
     }
-    cases
+    cases.into_iter().filter_map(|(case, fits)| fits.then_some(case)).collect()
 }
 
 fn names(pins: &'static [Pin]) -> impl Iterator<Item = &'static str> {
     pins.iter().map(|pin| pin.name)
 }
 
-fn value(ty: Elementary, cell: &str) -> Value {
-    let number = if ty == Elementary::Time {
-        i128::from(nanoseconds(cell))
-    } else {
-        cell.parse().unwrap_or_else(|error| panic!("{cell}: {error}"))
+/// None where the cell says a number that the type does not hold.
+fn value(ty: Elementary, cell: &str) -> Option<Value> {
+    if ty.is_real() {
+        return Value::real(ty, cell.parse().unwrap_or_else(|error| panic!("{cell}: {error}")));
+    }
+    let number = match (cell, ty.range()) {
+        ("MIN", Some((least, _))) => least,
+        ("MAX", Some((_, greatest))) => greatest,
+        ("MAX-1", Some((_, greatest))) => greatest - 1,
+        _ if ty == Elementary::Time => i128::from(nanoseconds(cell)),
+        _ => cell.parse().unwrap_or_else(|error| panic!("{cell}: {error}")),
     };
-    Value::integer(ty, number).unwrap_or_else(|| panic!("{cell} is no {ty}"))
+    Value::integer(ty, number)
 }
 
 /// Milliseconds with up to six decimals.
@@ -117,12 +147,14 @@ impl Case {
 
     /// A program with the block as `b`, an input variable named as the pin for each wired input, and `en`.
     ///
-    /// With `enable`, the power on the block's left is `en` and so EN; without it, that power is the first input.
+    /// With `enable`, the power on the block's left is `en` and so EN; without it, that power is the first input. Of a
+    /// block whose first input is no BOOL it is EN in any case.
     pub(crate) fn program(&self, enable: bool) -> Program {
         let mut program = drawing::program("steps");
         program.variables.push(drawing::variable(VariableClass::Input, "en", Elementary::Bool));
         let mut arguments = Vec::new();
         let inputs = self.block.inputs();
+        let enable = enable || inputs[0].ty != Elementary::Bool;
         for (index, pin) in inputs.iter().enumerate().filter(|(index, _)| *index == 0 || self.wired[*index]) {
             program.variables.push(drawing::variable(VariableClass::Input, &input(pin), pin.ty));
             if enable || index != 0 {

@@ -1,17 +1,24 @@
 //! The counters of IEC 61131-3, 6.6.3.5.4, as matiec's `counter.txt` runs them. The memories of the edges follow
-//! their inputs on every run, under reset and load as well.
+//! their inputs on every run, under reset and load as well. One rule serves every type that is counted in.
 
-use super::{Rule, Run};
+use super::{Rule, Rules, Run};
 use crate::elementary::{Elementary, Value};
+use crate::ladder::library::StandardBlock::{
+    Ctd, CtdDint, CtdInt, CtdLint, CtdUdint, CtdUlint, Ctu, CtuDint, CtuInt, CtuLint, CtuUdint, CtuUlint, Ctud,
+    CtudDint, CtudInt, CtudLint, CtudUdint, CtudUlint,
+};
 use crate::logic::{Binary, Compare, ValueId};
 
-/// Up: R clears and wins; else a rising CU counts while CV is below PV.
-pub(super) const CTU: Rule = Rule { states: &[("CU", Elementary::Bool)], run: ctu };
-/// Down: LD loads PV and wins; else a rising CD counts while CV is above 0.
-pub(super) const CTD: Rule = Rule { states: &[("CD", Elementary::Bool)], run: ctd };
-/// Both: R before LD before counting; two edges in one scan cancel.
-pub(super) const CTUD: Rule = Rule { states: &[("CU", Elementary::Bool), ("CD", Elementary::Bool)], run: ctud };
+pub(super) const RULES: Rules = &[
+    (&[Ctu, CtuInt, CtuDint, CtuLint, CtuUdint, CtuUlint], Rule { states: &[("CU", Elementary::Bool)], run: ctu }),
+    (&[Ctd, CtdInt, CtdDint, CtdLint, CtdUdint, CtdUlint], Rule { states: &[("CD", Elementary::Bool)], run: ctd }),
+    (
+        &[Ctud, CtudInt, CtudDint, CtudLint, CtudUdint, CtudUlint],
+        Rule { states: &[("CU", Elementary::Bool), ("CD", Elementary::Bool)], run: ctud },
+    ),
+];
 
+/// Up: R clears and wins; else a rising CU counts while CV is below PV.
 fn ctu(run: &mut Run<'_>) {
     let [cu, reset, preset] = [0, 1, 2].map(|pin| run.input(pin));
     let rises = run.rises(cu, 0);
@@ -24,6 +31,7 @@ fn ctu(run: &mut Run<'_>) {
     run.set_output(1, count);
 }
 
+/// Down: LD loads PV and wins; else a rising CD counts while CV is above 0.
 fn ctd(run: &mut Run<'_>) {
     let [cd, load, preset] = [0, 1, 2].map(|pin| run.input(pin));
     let rises = run.rises(cd, 0);
@@ -36,6 +44,7 @@ fn ctd(run: &mut Run<'_>) {
     run.set_output(1, count);
 }
 
+/// Both: R before LD before counting; two edges in one scan cancel.
 fn ctud(run: &mut Run<'_>) {
     let [cu, cd, reset, load, preset] = [0, 1, 2, 3, 4].map(|pin| run.input(pin));
     let (up, down) = (run.rises(cu, 0), run.rises(cd, 1));

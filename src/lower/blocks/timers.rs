@@ -1,12 +1,14 @@
 //! The timers of IEC 61131-3, 6.6.3.5.5, as matiec's `timer.txt` runs them. Each keeps the time at which it
-//! started, so that one that is skipped for some scans counts what it missed.
+//! started, so that one that is skipped for some scans counts what it missed. TONR, which the standard leaves out,
+//! starts and expires as TON does.
 //!
 //! The three states of the source need no state of their own: with the input's last value (`previous`) and the
 //! output, which timer is idle, timing or expired can be told. Each rule says how. "start + PT <= now" is computed as
 //! "now - start >= PT", which is the same where nothing overflows, and then right as well.
 
-use super::{Rule, Run};
+use super::{Rule, Rules, Run};
 use crate::elementary::{Elementary, Value};
+use crate::ladder::library::StandardBlock::{Tof, Ton, Tonr, Tp};
 use crate::logic::{Binary, Compare, ValueId};
 
 const IN: usize = 0;
@@ -17,13 +19,14 @@ const PREVIOUS: usize = 0;
 const START: usize = 1;
 const STATES: &[(&str, Elementary)] = &[("previous", Elementary::Bool), ("start", Elementary::Time)];
 
-/// On-delay. Idle while the input was off; else expired while Q is on, else timing.
-pub(super) const TON: Rule = Rule { states: STATES, run: ton };
-/// Off-delay. Timing while the input was off and Q is on; expired while both are off.
-pub(super) const TOF: Rule = Rule { states: STATES, run: tof };
-/// Pulse. Timing while Q is on; else expired while the input was on, else idle.
-pub(super) const TP: Rule = Rule { states: STATES, run: tp };
+pub(super) const RULES: Rules = &[
+    (&[Ton], Rule { states: STATES, run: ton }),
+    (&[Tof], Rule { states: STATES, run: tof }),
+    (&[Tp], Rule { states: STATES, run: tp }),
+    (&[Tonr], Rule { states: &[("timing", Elementary::Bool), ("last", Elementary::Time)], run: tonr }),
+];
 
+/// On-delay. Idle while the input was off; else expired while Q is on, else timing.
 fn ton(run: &mut Run<'_>) {
     let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);
@@ -42,6 +45,7 @@ fn ton(run: &mut Run<'_>) {
     run.set_output(ET, new_et);
 }
 
+/// Off-delay. Timing while the input was off and Q is on; expired while both are off.
 fn tof(run: &mut Run<'_>) {
     let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);
@@ -63,6 +67,7 @@ fn tof(run: &mut Run<'_>) {
     run.set_output(ET, new_et);
 }
 
+/// Pulse. Timing while Q is on; else expired while the input was on, else idle.
 fn tp(run: &mut Run<'_>) {
     let (on, was_on, timing) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
     let clock = Clock::read(run);
@@ -83,6 +88,34 @@ fn tp(run: &mut Run<'_>) {
     let new_start = run.logic.select(timing, clock.start, clock.now);
     run.set_state(START, new_start);
     run.set_state(PREVIOUS, on);
+    run.set_output(Q, new_q);
+    run.set_output(ET, new_et);
+}
+
+/// Retentive on-delay. R clears and wins; else ET sums up the time between runs that both have IN, until it is PT;
+/// then Q and ET stay until R. The time since the last run is added whole, also if runs were skipped.
+fn tonr(run: &mut Run<'_>) {
+    let [on, reset, preset] = [0, 1, 2].map(|pin| run.input(pin));
+    let (was_timing, last, q, et) = (run.state(0), run.state(1), run.output(Q), run.output(ET));
+    let not_reset = run.logic.not(reset);
+    let timing = run.logic.and(on, not_reset);
+    let stays_on = run.logic.and(timing, was_timing);
+    let not_expired = run.logic.not(q);
+    let counts = run.logic.and(stays_on, not_expired);
+    let (now, zero) = (run.logic.now(), run.logic.constant(Value::time(0)));
+    let passed = run.logic.binary(Binary::Subtract, now, last);
+    // A retained instance may have run last under a clock that was further on.
+    let passed = run.logic.binary(Binary::Maximum, passed, zero);
+    let sum = run.logic.binary(Binary::Add, et, passed);
+    let due = run.logic.compare(Compare::GreaterOrEqual, sum, preset);
+    let expires = run.logic.and(counts, due);
+    let expired = run.logic.or(q, expires);
+    let new_q = run.logic.and(not_reset, expired);
+    let running = run.logic.select(due, preset, sum);
+    let held = run.logic.select(counts, running, et);
+    let new_et = run.logic.select(reset, zero, held);
+    run.set_state(0, timing);
+    run.set_state(1, now);
     run.set_output(Q, new_q);
     run.set_output(ET, new_et);
 }

@@ -3,6 +3,8 @@
 use rung::elementary::{Elementary, Value};
 use rung::ladder::library::StandardBlock;
 
+use super::analog::{Derivative, Pid, PidInputs, Ramp, hysteresis, integral};
+
 /// One instance: its pins and what it remembers.
 #[derive(Clone, Debug)]
 pub(crate) struct Instance {
@@ -15,6 +17,9 @@ pub(crate) struct Instance {
     start: i64,
     /// For a timer last scan's IN; for others the memory of the rising edge of each BOOL input.
     previous: [bool; 2],
+    derivative: Derivative,
+    pid: Pid,
+    ramp: Ramp,
 }
 
 /// Where a timer is.
@@ -36,6 +41,9 @@ impl Instance {
             state: State::Idle,
             start: 0,
             previous: [false; 2],
+            derivative: Derivative::default(),
+            pid: Pid::default(),
+            ramp: Ramp::default(),
         }
     }
 
@@ -45,9 +53,25 @@ impl Instance {
             StandardBlock::Ton => self.on_delay(now),
             StandardBlock::Tof => self.off_delay(now),
             StandardBlock::Tp => self.pulse(now),
-            StandardBlock::Ctu => self.count_up(),
-            StandardBlock::Ctd => self.count_down(),
-            StandardBlock::Ctud => self.count_up_and_down(),
+            StandardBlock::Tonr => self.retentive_on_delay(now),
+            StandardBlock::Ctu
+            | StandardBlock::CtuInt
+            | StandardBlock::CtuDint
+            | StandardBlock::CtuLint
+            | StandardBlock::CtuUdint
+            | StandardBlock::CtuUlint => self.count_up(),
+            StandardBlock::Ctd
+            | StandardBlock::CtdInt
+            | StandardBlock::CtdDint
+            | StandardBlock::CtdLint
+            | StandardBlock::CtdUdint
+            | StandardBlock::CtdUlint => self.count_down(),
+            StandardBlock::Ctud
+            | StandardBlock::CtudInt
+            | StandardBlock::CtudDint
+            | StandardBlock::CtudLint
+            | StandardBlock::CtudUdint
+            | StandardBlock::CtudUlint => self.count_up_and_down(),
             StandardBlock::RTrig => {
                 let rises = self.rises(0, 0);
                 self.put_bool(0, rises);
@@ -61,6 +85,37 @@ impl Instance {
             StandardBlock::Sr => {
                 let q1 = self.bool(0) || (!self.bool(1) && self.outputs[0].is_true());
                 self.put_bool(0, q1);
+            }
+            StandardBlock::Integral => {
+                self.put_bool(0, !self.bool(1));
+                let held = real(self.outputs[1]);
+                let xout = integral(held, self.bool(0), self.bool(1), self.real(2), self.real(3), self.time(4));
+                self.put_real(1, xout);
+            }
+            StandardBlock::Derivative => {
+                let (run, xin, cycle) = (self.bool(0), self.real(1), self.time(2));
+                let xout = self.derivative.run(run, xin, cycle);
+                self.put_real(0, xout);
+            }
+            StandardBlock::Pid => {
+                let [pv, sp, x0, kp, tr, td] = [1, 2, 3, 4, 5, 6].map(|pin| self.real(pin));
+                let inputs = PidInputs { auto: self.bool(0), pv, sp, x0, kp, tr, td, cycle: self.time(7) };
+                let xout = self.pid.run(&inputs);
+                self.put_real(0, xout);
+            }
+            StandardBlock::Ramp => {
+                let (run, x0, x1, tr, cycle) = (self.bool(0), self.real(1), self.real(2), self.time(3), self.time(4));
+                let (busy, xout) = self.ramp.run(run, x0, x1, tr, cycle);
+                self.put_bool(0, busy);
+                self.put_real(1, xout);
+            }
+            StandardBlock::Hysteresis => {
+                let q = hysteresis(self.outputs[0].is_true(), self.real(0), self.real(1), self.real(2));
+                self.put_bool(0, q);
+            }
+            StandardBlock::Sema => {
+                let taken = self.bool(0) || (self.outputs[0].is_true() && !self.bool(1));
+                self.put_bool(0, taken);
             }
             StandardBlock::Rs => {
                 let q1 = !self.bool(1) && (self.bool(0) || self.outputs[0].is_true());
@@ -114,6 +169,30 @@ impl Instance {
         self.previous[0] = input;
     }
 
+    /// Idle: neither input is on. Timing: IN without R. Expired: until R. `start` is when it last ran.
+    fn retentive_on_delay(&mut self, now: i64) {
+        let was_timing = self.state == State::Timing;
+        if self.bool(1) {
+            self.state = State::Idle;
+            self.put_bool(0, false);
+            self.put_elapsed(0);
+        } else if self.state != State::Expired {
+            self.state = if self.bool(0) { State::Timing } else { State::Idle };
+            if was_timing && self.state == State::Timing {
+                let passed = i128::from(now) - i128::from(self.start);
+                let elapsed = self.output(1) + passed.max(0);
+                let preset = self.integer(2);
+                if elapsed >= preset {
+                    self.state = State::Expired;
+                    self.put_bool(0, true);
+                }
+                let elapsed = i64::try_from(elapsed.min(preset)).expect("PT is a TIME");
+                self.put_elapsed(elapsed);
+            }
+        }
+        self.start = now;
+    }
+
     fn begin(&mut self, now: i64) {
         self.state = State::Timing;
         self.start = now;
@@ -121,7 +200,7 @@ impl Instance {
 
     /// The step of every timing timer: expires, or tells how long it has been timing.
     fn time_is_up(&mut self, now: i64) -> bool {
-        let preset = i64::try_from(self.integer(1)).expect("a TIME has 64 bits");
+        let preset = self.time(1);
         let up = i128::from(self.start) + i128::from(preset) <= i128::from(now);
         if up {
             self.state = State::Expired;
@@ -189,15 +268,27 @@ impl Instance {
     }
 
     fn integer(&self, input: usize) -> i128 {
-        self.inputs[input].as_integer().expect("no standard block has a REAL input")
+        self.inputs[input].as_integer().expect("the input is no REAL")
+    }
+
+    fn time(&self, input: usize) -> i64 {
+        i64::try_from(self.integer(input)).expect("a TIME has 64 bits")
+    }
+
+    fn real(&self, input: usize) -> f32 {
+        real(self.inputs[input])
     }
 
     fn output(&self, output: usize) -> i128 {
-        self.outputs[output].as_integer().expect("no standard block has a REAL output")
+        self.outputs[output].as_integer().expect("the output is no REAL")
     }
 
     fn put_bool(&mut self, output: usize, value: bool) {
         self.outputs[output] = Value::bool(value);
+    }
+
+    fn put_real(&mut self, output: usize, value: f32) {
+        self.outputs[output] = Value::from_bits(Elementary::Real, u64::from(value.to_bits()));
     }
 
     /// A timer's ET.
@@ -206,6 +297,12 @@ impl Instance {
     }
 
     fn put_count(&mut self, output: usize, count: i128) {
-        self.outputs[output] = Value::integer(Elementary::Int, count).expect("a count stays between 0 and PV");
+        let ty = self.outputs[output].ty();
+        self.outputs[output] = Value::integer(ty, count).expect("a count stays between 0 and PV");
     }
+}
+
+/// The number of a REAL, with the bits of a NaN.
+fn real(value: Value) -> f32 {
+    f32::from_bits(u32::try_from(value.bits()).expect("a REAL has 32 bits"))
 }

@@ -92,10 +92,11 @@ impl Oracle<'_> {
         let seen = match element {
             Element::Call(call) => {
                 let outputs = &self.instance(call.instance).outputs;
-                let bools = outputs.iter().filter(|value| value.ty() == Elementary::Bool);
-                bools.map(|value| value.is_true()).collect()
+                let bools: Vec<Value> =
+                    outputs.iter().copied().filter(|value| value.ty() == Elementary::Bool).collect();
+                if bools.is_empty() { outputs.clone() } else { bools }
             }
-            _ => vec![right],
+            _ => vec![Value::bool(right)],
         };
         let activity = &mut self.activities[place];
         if !activity.last.is_empty() && activity.last != seen {

@@ -156,7 +156,7 @@ impl Generator {
         }
         let bools: Vec<&str> =
             block.outputs().iter().filter(|pin| pin.ty == Elementary::Bool).map(|pin| pin.name).collect();
-        let chosen = self.dice.percent(if bools.len() > 1 { 60 } else { 15 });
+        let chosen = !bools.is_empty() && self.dice.percent(if bools.len() > 1 { 60 } else { 15 });
         drawing::element(ElementKind::Block(BlockCall {
             instance: drawing::name(&instance.name),
             type_name: (!instance.declared || self.dice.percent(10)).then(|| drawing::name(block.name())),
@@ -165,14 +165,15 @@ impl Generator {
         }))
     }
 
-    /// With the first input among them the power on the left is EN.
+    /// With the first BOOL input among them, or without one, the power on the left is EN.
     fn wired_inputs(&mut self, block: StandardBlock, depth: usize) -> Vec<Argument> {
         let enable = self.dice.percent(25);
         let mut arguments = Vec::new();
+        let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
         for (index, pin) in block.inputs().iter().enumerate() {
             let wire = match (index, pin.ty) {
-                (0, _) if !enable => continue,
-                (0, _) => self.bool_wire(depth),
+                _ if Some(index) == power && !enable => continue,
+                _ if Some(index) == power => self.bool_wire(depth),
                 (_, Elementary::Bool) if self.dice.percent(30) => continue,
                 (_, Elementary::Bool) => self.bool_wire(depth),
                 _ if self.dice.percent(8) => continue,

@@ -16,8 +16,8 @@ impl Generator {
             }
         }
         for ty in Elementary::ALL {
-            // Counters and timers need something to be wired to.
-            let common = matches!(ty, Elementary::Int | Elementary::Time);
+            // Blocks need something to be wired to.
+            let common = matches!(ty, Elementary::Int | Elementary::Real | Elementary::Time);
             for (class, prefix, percent) in
                 [(Memory, "m", 40), (Input, "i", 15), (Output, "o", 10), (Constant, "c", 15)]
             {
