@@ -173,7 +173,10 @@ impl Band<'_> {
         }
         if lane.signal.ty() != Elementary::Time {
             for (number, y) in [(lane.greatest, self.high + 4.0), (least, self.low + 4.0)] {
-                let label = text(&number.to_string(), self.axis.left() - 4.0, y);
+                // A REAL in its own shortest form, not in that of the same LREAL.
+                let spelled = Value::real(lane.signal.ty(), number).map(|value| Spelled(value).to_string());
+                let label = spelled.unwrap_or_else(|| number.to_string());
+                let label = text(&label, self.axis.left() - 4.0, y);
                 group = group.add(label.set("class", "small").set("text-anchor", "end"));
             }
         }
