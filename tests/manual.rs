@@ -56,6 +56,7 @@ fn made_anew(stem: &str, page: &str) -> String {
             ("drawing", "") => text.push_str(&fenced(&drawing(stem, &example))),
             ("example", "") => text.push_str(&fenced(&example)),
             ("pins", block) => text.push_str(&pins(block, &old)),
+            ("variants", block) => text.push_str(&variants(block)),
             _ => panic!("{stem}.md has a mark of no known kind: {line}"),
         }
         text.push_str("<!-- end -->\n");
@@ -93,6 +94,13 @@ fn pins(block: &str, old: &[&str]) -> String {
         table.push_str(&format!("{row} {meaning} |\n"));
     }
     table
+}
+
+/// The blocks that share the page of a block, for other types.
+fn variants(block: &str) -> String {
+    let sharing = StandardBlock::ALL.iter().filter(|variant| base(**variant) == block && variant.name() != block);
+    let names: Vec<String> = sharing.map(|variant| format!("`{}`", variant.name())).collect();
+    format!("The same for counts of another type:\n{}.\n", names.join(", "))
 }
 
 fn rung<'a>(folder: &Path, arguments: impl IntoIterator<Item = &'a str>) -> Output {
@@ -210,7 +218,9 @@ fn help_shows_every_page_within_the_terminal() {
 #[test]
 fn help_knows_every_block_in_any_case() {
     for block in StandardBlock::ALL {
-        assert_eq!(help(block.name()), help(&base(*block).to_lowercase()));
+        let page = help(block.name());
+        assert_eq!(page, help(&base(*block).to_lowercase()));
+        assert!(page.contains(block.name()), "the page of {} does not name it", block.name());
     }
 }
 

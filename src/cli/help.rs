@@ -48,6 +48,7 @@ const PAGES: &[Page] = pages! {
     "ton": "ton" "on-delay";
     "tof": "tof" "off-delay";
     "tp": "tp" "pulse timer";
+    "tonr": "tonr" "retentive timer";
     "ctu": "ctu" "up counter";
     "ctd": "ctd" "down counter";
     "ctud": "ctud" "up-down counter";
@@ -55,6 +56,12 @@ const PAGES: &[Page] = pages! {
     "f_trig": "f_trig" "falling edge";
     "sr": "sr" "bistable" "flip-flop";
     "rs": "rs";
+    "sema": "sema" "semaphore";
+    "integral": "integral";
+    "derivative": "derivative";
+    "pid": "pid" "controller";
+    "ramp": "ramp";
+    "hysteresis": "hysteresis" "two-point switch";
 };
 
 impl Page {
