@@ -183,7 +183,8 @@ pub struct Call {
     pub inputs: Vec<Input>,
     /// The wired outputs, in the order written: which one, and where to.
     pub outputs: Vec<(usize, Place)>,
-    /// The BOOL output that gives the power on the right. `None`: the power is ENO, which equals EN.
+    /// The BOOL output that gives the power on the right. `None`: the power is ENO, which equals EN, and is
+    /// TRUE where the power on the left feeds an input.
     pub power_output: Option<usize>,
 }
 

@@ -158,7 +158,8 @@ impl Lowering<'_> {
         }
         match call.power_output {
             Some(pin) => self.logic.load(slots.outputs[pin]),
-            None => left,
+            // ENO, which is TRUE for a block that always runs.
+            None => enable.unwrap_or_else(|| self.logic.bool(true)),
         }
     }
 }

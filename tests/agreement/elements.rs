@@ -170,6 +170,30 @@ fn without_enable_a_block_holds_its_outputs_and_writes_none() {
 }
 
 #[test]
+fn on_the_right_of_a_block_without_a_bool_output_the_power_is_eno() {
+    let always = drawn(vec![vec![
+        contact("a"),
+        call("d", StandardBlock::Derivative, vec![argument("XIN", Wire::Value(read("z")))]),
+        coil(CoilKind::Plain, "x"),
+    ]]);
+    assert_eq!(bits(&always, "x", "0101", "0000"), "1111", "the power is RUN, so that the block always runs");
+    let enabled = drawn(vec![vec![
+        contact("a"),
+        call("d", StandardBlock::Derivative, vec![argument("RUN", Wire::Value(read("b")))]),
+        coil(CoilKind::Plain, "x"),
+    ]]);
+    assert_eq!(bits(&enabled, "x", "0101", "0011"), "0101", "the power is EN");
+}
+
+#[test]
+fn of_a_block_without_a_bool_input_the_power_on_the_left_is_en() {
+    let inputs = vec![argument("XIN1", Wire::Value(integer(1)))];
+    let program =
+        drawn(vec![vec![contact("a"), call("h", StandardBlock::Hysteresis, inputs), coil(CoilKind::Plain, "x")]]);
+    assert_eq!(bits(&program, "x", "0010", "0000"), "0011");
+}
+
+#[test]
 fn a_circuit_at_a_pin_starts_at_the_left_rail_and_runs_whatever_the_power_is() {
     let circuit = Circuit { branches: vec![branch(vec![contact("b"), coil(CoilKind::Plain, "y")])], span: NOWHERE };
     let latch = call("s", StandardBlock::Rs, vec![argument("R1", Wire::Circuit(circuit))]);

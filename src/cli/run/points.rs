@@ -26,9 +26,9 @@ pub(super) struct Block {
     pub kind: StandardBlock,
     /// The BOOL outputs.
     pub powers: Vec<Point>,
-    /// What it has reached: ET or CV.
+    /// What it has reached, its first number: ET, CV or XOUT.
     pub reached: Option<Point>,
-    /// What it is to reach: PT or PV.
+    /// What that is to reach: the PT of an ET, the PV of a CV.
     pub preset: Option<Preset>,
 }
 
@@ -97,13 +97,15 @@ impl Points {
     }
 }
 
-/// What the numeric input of each block instance is wired to, where that is a constant or a variable.
+/// What the preset of each block instance is wired to, where that is a constant or a variable.
 fn presets(checked: &Checked, layout: &Layout) -> Vec<Option<Preset>> {
     let mut presets = vec![None; checked.variables().len()];
     elements::visit(checked, |element| {
         let Element::Call(call) = element else { return };
-        let number = call.block.inputs().iter().position(|pin| pin.ty != Elementary::Bool);
-        let wired = call.inputs.iter().find(|input| Some(input.pin) == number);
+        let preset = [("ET", "PT"), ("CV", "PV")]
+            .iter()
+            .find_map(|(reached, preset)| call.block.output(reached).and_then(|_| call.block.input(preset)));
+        let wired = call.inputs.iter().find(|input| Some(input.pin) == preset);
         let Some(Input { wire: Wire::Value(expression), .. }) = wired else { return };
         presets[call.instance.index()] = match &expression.kind {
             ExpressionKind::Constant(value) => Some(Preset::Constant(*value)),

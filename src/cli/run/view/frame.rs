@@ -6,7 +6,6 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 use super::super::points::{Block, Point, Points, shown};
 use super::super::time::{exact, rounded};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::library::StandardBlock;
 
 /// What is drawn.
 pub(super) struct State<'a> {
@@ -136,17 +135,13 @@ fn block(block: &Block, image: &[u8]) -> String {
     let preset = block.preset.as_ref().map(|preset| preset.value(image));
     let progress = match (reached, preset) {
         (Some(reached), Some(preset)) => {
-            let bar = if is_timer(block.kind) { bar(reached, preset) } else { String::new() };
+            let bar = if reached.ty() == Elementary::Time { bar(reached, preset) } else { String::new() };
             format!("{bar}  {} of {}", shown_briefly(reached), shown_briefly(preset))
         }
         (Some(reached), None) => format!("  {}", shown_briefly(reached)),
         _ => String::new(),
     };
     format!("     {:<16} {:<6} {:<10}{progress}", block.name, block.kind.name(), powers.join("  "))
-}
-
-fn is_timer(kind: StandardBlock) -> bool {
-    matches!(kind, StandardBlock::Ton | StandardBlock::Tof | StandardBlock::Tp)
 }
 
 /// A value; of a TIME as a person reads a clock.
@@ -182,6 +177,7 @@ fn fitted(line: &str, width: usize) -> String {
 mod tests {
     use super::*;
     use crate::cli::run::points::Preset;
+    use crate::ladder::library::StandardBlock;
     use crate::logic::image::{Area, Slot};
 
     fn point(name: &str, ty: Elementary, offset: u32, key: Option<char>) -> Point {
