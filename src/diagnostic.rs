@@ -3,11 +3,15 @@
 //! One type for every stage and one place that renders it. A diagnostic must never be made without a code:
 //! the codes are stable, and the manual lists them from this table.
 
+mod excerpt;
+
 use std::fmt;
+use std::ops::Range;
 
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label, LabelStyle, Severity as ReportSeverity};
-use codespan_reporting::files::{Error as FilesError, Files};
 use codespan_reporting::term::{self, Config};
+
+use excerpt::{CONTEXT, Excerpt, tidy};
 
 use crate::source::{Source, Span};
 
@@ -172,13 +176,19 @@ const MOST_RENDERED: usize = 100;
 pub fn render(source: &Source, diagnostics: &[Diagnostic]) -> String {
     let mut ordered: Vec<&Diagnostic> = diagnostics.iter().collect();
     ordered.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code.number()));
-    let config = Config { tab_width: 4, ..Config::default() };
+    let config =
+        Config { tab_width: 4, start_context_lines: CONTEXT.0, end_context_lines: CONTEXT.1, ..Config::default() };
     let mut text = String::new();
     for diagnostic in ordered.iter().take(MOST_RENDERED) {
-        let report = report(source, diagnostic);
-        if term::emit_to_string(&mut text, &config, source, &report).is_err() {
+        let places: Vec<Range<usize>> = std::iter::once(&diagnostic.span)
+            .chain(diagnostic.related.iter().map(|(span, _)| span))
+            .map(|span| within(source, *span))
+            .collect();
+        let excerpt = Excerpt::new(source, &places);
+        let report = report(diagnostic, places.iter().map(|place| excerpt.place(place)));
+        if term::emit_to_string(&mut text, &config, &excerpt, &report).is_err() {
             // A place outside the source: the finding still counts, so it is printed without its line.
-            text.push_str(&format!("{}: {}\n", diagnostic.code, diagnostic.message));
+            text.push_str(&format!("{}: {}\n", diagnostic.code, tidy(&diagnostic.message)));
         }
     }
     if ordered.len() > MOST_RENDERED {
@@ -187,47 +197,28 @@ pub fn render(source: &Source, diagnostics: &[Diagnostic]) -> String {
     text
 }
 
-fn report(source: &Source, diagnostic: &Diagnostic) -> Report<()> {
+/// The bytes of a span. It may end up past the text when an input was cut short; rendering needs it inside.
+fn within(source: &Source, span: Span) -> Range<usize> {
+    let end = span.range().end.min(source.text().len());
+    span.range().start.min(end)..end
+}
+
+/// The report of a diagnostic; `places` are those of its span and of its related spans, in that order.
+fn report(diagnostic: &Diagnostic, mut places: impl Iterator<Item = Range<usize>>) -> Report<()> {
     let severity = match diagnostic.code.severity() {
         Severity::Warning => ReportSeverity::Warning,
         Severity::Error => ReportSeverity::Error,
     };
-    // A span may end up past the text when an input was cut short; rendering needs it inside.
-    let within = |span: Span| {
-        let end = span.range().end.min(source.text().len());
-        span.range().start.min(end)..end
-    };
-    let related = diagnostic
-        .related
-        .iter()
-        .map(|(span, note)| Label::new(LabelStyle::Secondary, (), within(*span)).with_message(note));
+    let primary = places.next().map(|place| Label::new(LabelStyle::Primary, (), place));
+    let related = places
+        .zip(&diagnostic.related)
+        .map(|(place, (_, note))| Label::new(LabelStyle::Secondary, (), place).with_message(tidy(note)));
     Report::new(severity)
         .with_code(diagnostic.code.to_string())
-        .with_message(&diagnostic.message)
-        .with_label(Label::new(LabelStyle::Primary, (), within(diagnostic.span)))
-        .with_labels_iter(related)
-        .with_notes(diagnostic.hint.iter().map(|hint| format!("hint: {hint}")).collect())
+        .with_message(tidy(&diagnostic.message))
+        .with_labels_iter(primary.into_iter().chain(related))
+        .with_notes(diagnostic.hint.iter().map(|hint| format!("hint: {}", tidy(hint))).collect())
 }
 
-impl<'a> Files<'a> for Source {
-    type FileId = ();
-    type Name = &'a str;
-    type Source = &'a str;
-
-    fn name(&'a self, _id: ()) -> Result<&'a str, FilesError> {
-        Ok(Self::name(self))
-    }
-
-    fn source(&'a self, _id: ()) -> Result<&'a str, FilesError> {
-        Ok(self.text())
-    }
-
-    fn line_index(&'a self, _id: (), byte: usize) -> Result<usize, FilesError> {
-        Ok(self.line(Span::new(byte, byte).start) - 1)
-    }
-
-    fn line_range(&'a self, _id: (), line: usize) -> Result<std::ops::Range<usize>, FilesError> {
-        let error = || FilesError::LineTooLarge { given: line, max: self.line(u32::MAX) };
-        Self::line_range(self, line).ok_or_else(error)
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -168,6 +168,35 @@ fn an_earlier_trace_is_replaced_whole() {
     assert_eq!(folder.read("out.csv"), TRACE);
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_no_file() {
+    let folder = Folder::new();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rung"));
+    command.current_dir(folder.0.path()).args(["sim", "lamp.rung", "--scans", "900000000", "--trace", "out.csv"]);
+    let mut child = command.spawn().expect("the command starts");
+    // The temporary file is there before the first scan.
+    while folder.names().len() == 2 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(kill.success());
+    assert_eq!(child.wait().expect("a child").code(), Some(130));
+    assert_eq!(folder.names(), ["lamp.csv", "lamp.rung"]);
+}
+
+#[test]
+fn files_are_written_also_where_nobody_reads_the_standard_output() {
+    let folder = Folder::new();
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rung"));
+    command.current_dir(folder.0.path()).args(["sim", "lamp.rung", "--scans", "9000", "--trace", "-"]);
+    let status = command.args(["--trace", "out.csv"]).stdout(writer).status().expect("the command runs");
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(folder.read("out.csv").lines().count(), 9001);
+}
+
 #[test]
 fn a_replay_is_run_and_one_of_another_program_refused() {
     let folder = Folder::new();

@@ -30,7 +30,9 @@ impl Schedule {
     /// those not counted that it skips.
     pub fn begin(&mut self, at: u64) -> u64 {
         let cycle = u64::from(self.cycle.get());
-        let skipped = at.saturating_sub(self.due) / cycle;
+        let behind = at.saturating_sub(self.due);
+        // Only what is late pays for a division, which is long work for a 32-bit core.
+        let skipped = if behind < cycle { 0 } else { behind / cycle };
         let began_for = self.due + skipped * cycle;
         self.late = skipped > 0;
         self.skipped += skipped;

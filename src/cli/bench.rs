@@ -1,21 +1,26 @@
 //! `rung bench`: every engine on the given programs, side by side.
 //!
 //! Every engine gets the same images at the same times. What is measured is the scan alone: the inputs are changed
-//! between the measured runs, a tenth of the BOOLs each time.
+//! between the measured scans, a tenth of the BOOLs each time. The engines take turns, so that whatever else the
+//! machine does hits all of them alike, and the figures are medians over the turns.
+
+mod plant;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use rung_runtime::Scan;
+use target_lexicon::Triple;
 
 use super::{Failure, load_checked, print};
 use crate::diagnostic::Code;
-use crate::elementary::{Elementary, Value};
+use crate::engine::disassemble::lines;
 use crate::engine::interp::{Interpreter, Textbook};
-use crate::engine::jit::Jit;
-use crate::logic::{Area, Program, Slot};
+use crate::engine::jit::{Jit, host_isa};
+use crate::logic::Program;
 use crate::{lower, opt};
+use plant::Plant;
 
 /// Measures every engine on the given programs
 #[derive(Debug, clap::Args)]
@@ -27,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     engine: Option<Engine>,
     /// Run exactly so many scans, for counting instructions, instead of as many as measuring takes
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     scans: Option<u64>,
 }
 
@@ -50,134 +55,149 @@ impl Engine {
     }
 }
 
-/// Runs that the median is taken of, and how long one should take.
-const RUNS: usize = 41;
-const RUN_TIME: Duration = Duration::from_millis(10);
+/// Turns that the median is taken of, and how long one should take.
+const TURNS: usize = 41;
+const TURN_TIME: Duration = Duration::from_millis(10);
+/// Scans of a turn, also of a program that takes no time.
+const MOST_SCANS: u64 = 1 << 20;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut table = format!(
-        "{:<24} {:>7} {:<9} {:>10} {:>8} {:>8} {:>11} {:>10}\n",
-        "program", "rungs", "engine", "ns/scan", "ns/rung", "ratio", "compile ms", "bytes/rung"
+        "{:<20} {:>6} {:<8} {:>11} {:>8} {:>7}  {:<BAR$} {:>10} {:>10} {:>10}\n",
+        "program", "rungs", "engine", "ns/scan", "ns/rung", "ratio", "", "compile ms", "bytes/rung", "instr/rung"
     );
     for path in &arguments.files {
         let (loaded, checked) = load_checked(path)?;
         let program = lower::lower(&checked, &loaded.source, None)
             .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
         let program = opt::optimise(program);
-        let mut fastest = None;
-        for engine in Engine::ALL.into_iter().filter(|engine| arguments.engine.is_none_or(|only| only == *engine)) {
-            let start = Instant::now();
-            let (mut scan, code_bytes) = make(engine, &program)?;
-            let compile = start.elapsed();
-            let nanoseconds = measure(scan.as_mut(), &program, arguments.scans);
-            let fastest = *fastest.get_or_insert(nanoseconds);
-            #[expect(clippy::cast_precision_loss, reason = "counts for people to read")]
-            let (rungs, bytes) = (program.sections.len().max(1) as f64, code_bytes as f64);
-            // Writing to a string does not fail.
-            let _ = writeln!(
-                table,
-                "{:<24} {:>7} {:<9} {:>10.1} {:>8.2} {:>8.2} {:>11.2} {:>10.1}",
-                program.name,
-                program.sections.len(),
-                engine.name(),
-                nanoseconds,
-                nanoseconds / rungs,
-                nanoseconds / fastest,
-                compile.as_secs_f64() * 1e3,
-                bytes / rungs
-            );
-        }
+        let chosen = Engine::ALL.into_iter().filter(|engine| arguments.engine.is_none_or(|only| only == *engine));
+        let mut subjects = chosen.map(|engine| Subject::new(engine, &program)).collect::<Result<Vec<_>, _>>()?;
+        let medians = measure(&mut subjects, arguments.scans);
+        table.push_str(&rows(&program, &subjects, &medians));
     }
     print(&table)
 }
 
-fn make(engine: Engine, program: &Program) -> Result<(Box<dyn Scan>, usize), Failure> {
-    Ok(match engine {
-        Engine::Jit => {
-            let jit = Jit::compile(program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
-            let bytes = jit.code_bytes();
-            (Box::new(jit), bytes)
-        }
-        Engine::Interp => {
-            let interpreter = Interpreter::new(program);
-            let bytes = interpreter.code_bytes();
-            (Box::new(interpreter), bytes)
-        }
-        Engine::Textbook => {
-            let textbook = Textbook::new(program);
-            (Box::new(textbook), size_of_val(program.instructions.as_slice()))
-        }
-    })
+/// The rows of one program. Ratios are to the fastest engine, and a full bar is the slowest.
+fn rows(program: &Program, subjects: &[Subject<'_>], medians: &[f64]) -> String {
+    // A clock may be too coarse to see a scan at all.
+    let (fastest, slowest) =
+        medians.iter().fold((f64::INFINITY, 0.1f64), |(least, most), median| (least.min(*median), most.max(*median)));
+    let sections = program.sections.len();
+    let a_rung = |count: f64| if sections == 0 { "-".to_owned() } else { format!("{:.1}", count / to_f64(sections)) };
+    let mut rows = String::new();
+    for (subject, median) in subjects.iter().zip(medians) {
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            rows,
+            "{:<20} {:>6} {:<8} {:>11.1} {:>8} {:>7.2}  {:<BAR$} {:>10.2} {:>10} {:>10}",
+            program.name,
+            sections,
+            subject.engine.name(),
+            median,
+            a_rung(*median),
+            median / fastest.max(0.1),
+            bar(*median / slowest),
+            subject.compile.as_secs_f64() * 1e3,
+            a_rung(to_f64(subject.code_bytes)),
+            subject.instructions.map_or_else(|| "-".to_owned(), |count| a_rung(to_f64(count))),
+        );
+    }
+    rows
 }
 
-/// Nanoseconds a scan: the median of the runs, or the mean over exactly so many scans.
-fn measure(scan: &mut dyn Scan, program: &Program, scans: Option<u64>) -> f64 {
-    let mut plant = Plant::new(program);
+/// Cells of the longest bar.
+const BAR: usize = 16;
+
+/// A bar of a length from 0 to 1, at least a sliver.
+fn bar(share: f64) -> String {
+    (0..BAR).take_while(|cell| *cell == 0 || share * to_f64(BAR) >= to_f64(*cell) + 0.5).map(|_| '█').collect()
+}
+
+/// An engine that is ready to run, and its plant.
+struct Subject<'p> {
+    engine: Engine,
+    scan: Box<dyn Scan>,
+    plant: Plant<'p>,
+    compile: Duration,
+    /// Bytes of machine code, or of what the engine has in its place.
+    code_bytes: usize,
+    /// Machine instructions of a scan: exact, since the code is a straight line. `None` where they are not known.
+    instructions: Option<usize>,
+}
+
+impl<'p> Subject<'p> {
+    fn new(engine: Engine, program: &'p Program) -> Result<Self, Failure> {
+        let start = Instant::now();
+        let (scan, code_bytes, instructions, compile): (Box<dyn Scan>, _, _, _) = match engine {
+            Engine::Jit => {
+                let refused = |error: String| Failure::new(Code::CannotCompile, error);
+                let jit = Jit::compile(program).map_err(|error| refused(error.to_string()))?;
+                let compile = start.elapsed();
+                let instructions = host_isa().ok().and_then(|isa| instructions(&jit, isa.triple()).ok());
+                let bytes = jit.code_bytes();
+                (Box::new(jit), bytes, instructions, compile)
+            }
+            Engine::Interp => {
+                let interpreter = Interpreter::new(program);
+                let bytes = interpreter.code_bytes();
+                (Box::new(interpreter), bytes, None, start.elapsed())
+            }
+            Engine::Textbook => {
+                let textbook = Textbook::new(program);
+                (Box::new(textbook), size_of_val(program.instructions.as_slice()), None, start.elapsed())
+            }
+        };
+        Ok(Self { engine, scan, plant: Plant::new(program), compile, code_bytes, instructions })
+    }
+
+    /// Runs scans; gives nanoseconds a scan.
+    fn run(&mut self, scans: u64) -> f64 {
+        self.plant.run(self.scan.as_mut(), scans)
+    }
+}
+
+/// Machine instructions of one scan.
+fn instructions(jit: &Jit, target: &Triple) -> Result<usize, String> {
+    jit.chunks().iter().map(|chunk| Ok(lines(&chunk.code[..chunk.instruction_bytes], target)?.len())).sum()
+}
+
+/// Nanoseconds a scan of each engine: the medians of the turns, or the means over exactly so many scans.
+fn measure(subjects: &mut [Subject<'_>], scans: Option<u64>) -> Vec<f64> {
     if let Some(scans) = scans {
-        return plant.run(scan, scans);
+        return subjects.iter_mut().map(|subject| subject.run(scans)).collect();
     }
-    let mut scans = 1;
-    while plant.run(scan, scans) * to_f64(scans) < RUN_TIME.as_secs_f64() * 1e9 / 2.0 {
-        scans *= 2;
-    }
-    let mut runs: Vec<f64> = (0..RUNS).map(|_| plant.run(scan, scans)).collect();
-    runs.sort_by(f64::total_cmp);
-    runs[RUNS / 2]
-}
-
-/// An image whose BOOL inputs change at random.
-struct Plant<'a> {
-    image: Vec<u8>,
-    inputs: Vec<&'a Slot>,
-    now: i64,
-    random: u64,
-}
-
-/// Time from one scan to the next, in nanoseconds.
-const CYCLE: i64 = 1_000_000;
-/// Scans between two changes of the inputs, so that changing them costs next to nothing beside the scans.
-const SCANS_PER_CHANGE: u64 = 16;
-
-impl<'a> Plant<'a> {
-    fn new(program: &'a Program) -> Self {
-        let slots = program.layout.slots().iter();
-        let inputs = slots.filter(|slot| slot.area == Area::Input && slot.ty == Elementary::Bool).collect();
-        Self { image: program.layout.initial_image(), inputs, now: 0, random: 0x9E37_79B9_7F4A_7C15 }
-    }
-
-    fn next_random(&mut self) -> u64 {
-        // xorshift64: cheap, and the same on every machine.
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        self.random
-    }
-
-    /// Runs scans; gives nanoseconds a scan, without the time for changing inputs.
-    fn run(&mut self, scan: &mut dyn Scan, scans: u64) -> f64 {
-        let mut spent = Duration::ZERO;
-        let mut left = scans;
-        while left > 0 {
-            for _ in 0..self.inputs.len().div_ceil(10) {
-                let (which, value) = (self.next_random(), self.next_random());
-                let index = usize::try_from(which % self.inputs.len() as u64).unwrap_or(0);
-                self.inputs[index].write(&mut self.image, Value::bool(value >> 63 == 1));
+    let least = TURN_TIME.as_secs_f64() * 1e9;
+    let turns: Vec<u64> = subjects
+        .iter_mut()
+        .map(|subject| {
+            let mut scans = 1;
+            while subject.run(scans) * to_f64(scans) < least / 2.0 && scans < MOST_SCANS {
+                scans *= 2;
             }
-            let batch = left.min(SCANS_PER_CHANGE);
-            let start = Instant::now();
-            for _ in 0..batch {
-                scan.scan(&mut self.image, self.now);
-                self.now += CYCLE;
-            }
-            spent += start.elapsed();
-            left -= batch;
+            scans
+        })
+        .collect();
+    let mut measured = vec![Vec::with_capacity(TURNS); subjects.len()];
+    for _ in 0..TURNS {
+        for ((subject, scans), measured) in subjects.iter_mut().zip(&turns).zip(&mut measured) {
+            measured.push(subject.run(*scans));
         }
-        spent.as_secs_f64() * 1e9 / to_f64(scans)
     }
+    measured
+        .into_iter()
+        .map(|mut measured| {
+            measured.sort_by(f64::total_cmp);
+            measured[TURNS / 2]
+        })
+        .collect()
 }
 
-fn to_f64(count: u64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "a count of scans")]
+/// A count for people to read.
+fn to_f64(count: impl TryInto<u64>) -> f64 {
+    let count: u64 = count.try_into().unwrap_or(u64::MAX);
+    #[expect(clippy::cast_precision_loss, reason = "a count for people to read")]
     let count = count as f64;
     count
 }

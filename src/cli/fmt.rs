@@ -20,7 +20,15 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut failed = false;
     for path in &arguments.files {
-        let loaded = load(path)?;
+        let loaded = match load(path) {
+            Ok(loaded) => loaded,
+            Err(Failure::Error(text)) => {
+                report(&text);
+                failed = true;
+                continue;
+            }
+            Err(other) => return Err(other),
+        };
         if any_error(&loaded.diagnostics) {
             report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
             failed = true;

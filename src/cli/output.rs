@@ -19,6 +19,8 @@ pub(crate) enum Failure {
     Said,
     /// Whoever read the standard output has closed it, which is no error.
     Closed,
+    /// Someone asked it to end before it was done; there is nothing to say, and the exit code is 130.
+    Interrupted,
 }
 
 impl Failure {
@@ -36,10 +38,10 @@ impl Failure {
 /// Prints to the standard output, without a line break of its own.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
-        ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::new(Code::CannotWrite, format!("the standard output cannot be written: {error}")),
-    })
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(|error| cannot_write(Path::new("-"), &error))
 }
 
 /// Prints to the standard error stream; that it cannot be written is no reason to stop.
@@ -70,8 +72,11 @@ enum Sink {
 }
 
 impl WholeFile {
-    /// Starts a file; nothing is seen of it before [`WholeFile::finish`].
+    /// Starts a file; nothing is seen of it before [`WholeFile::finish`]. A link stays one, and what it points to is
+    /// written.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let linked = path.is_symlink().then(|| path.canonicalize()).and_then(Result::ok);
+        let path = linked.as_deref().unwrap_or(path);
         let create = || -> io::Result<Sink> {
             if path == Path::new("-") {
                 return Ok(Sink::Stdout(BufWriter::new(io::stdout())));
@@ -136,8 +141,11 @@ fn permissions(path: &Path) -> std::fs::Permissions {
 
 /// A failure to write a file; that the standard output is closed is none.
 pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    if path == Path::new("-") && error.kind() == ErrorKind::BrokenPipe {
-        return Failure::Closed;
+    if path == Path::new("-") {
+        return match error.kind() {
+            ErrorKind::BrokenPipe => Failure::Closed,
+            _ => Failure::new(Code::CannotWrite, format!("the standard output cannot be written: {error}")),
+        };
     }
     Failure::new(Code::CannotWrite, format!("{} cannot be written: {error}", path.display()))
 }
@@ -147,6 +155,7 @@ pub(super) fn exit(result: Result<(), Failure>) -> ExitCode {
     match result {
         Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,
         Err(Failure::Said) => ExitCode::FAILURE,
+        Err(Failure::Interrupted) => ExitCode::from(130),
         Err(Failure::Error(text)) => {
             report(&text);
             ExitCode::FAILURE

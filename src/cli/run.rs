@@ -1,6 +1,6 @@
 //! `rung run`: a program in real time, on a simulated panel.
 
-mod difference;
+pub(super) mod difference;
 mod elements;
 mod engine;
 mod machine;

@@ -3,10 +3,13 @@
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::ValueEnum;
 use rung_runtime::Scan;
 
+use super::run::difference;
 use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_source};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
@@ -16,7 +19,6 @@ use crate::logic::{Layout, Program};
 use crate::lower::lower;
 use crate::opt::optimise;
 use crate::replay::Replay;
-use crate::simulate::decimal::Milliseconds;
 use crate::simulate::{Schedule, Simulation, Stimuli};
 use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
 
@@ -78,30 +80,62 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Made before the outputs, so that what cannot be compiled leaves nothing.
     let mut engines = Engines::new(arguments.engine, &program)?;
     let paths = trace_paths(&arguments.trace)?;
+    // Where it would end the process at once, a temporary file would be left beside each output.
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::new(Code::CannotStart, format!("Ctrl-C cannot be caught: {error}")))?;
     let mut files = paths.iter().map(|(path, _)| WholeFile::create(path)).collect::<Result<Vec<_>, _>>()?;
     let mut outputs = Vec::new();
     for ((path, format), file) in paths.iter().zip(&mut files) {
         let trace = format.start(&program.name, signals.clone(), course.period(), file);
-        outputs.push((path, trace.map_err(|error| cannot_write(path, &error))?));
+        match trace.map_err(|error| cannot_write(path, &error)) {
+            // The others are still to be written.
+            Err(Failure::Closed) if paths.len() > 1 => {}
+            trace => outputs.push((*path, trace?)),
+        }
     }
 
     let mut simulation = course.start(&program.layout);
     let mut beside = course.start(&program.layout);
     while let Some(now) = simulation.step(&mut *engines.first) {
+        if stop.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted);
+        }
         if let Some(second) = &mut engines.second {
             beside.step(&mut **second);
             if let Some(difference) = Difference::between(&program, simulation.image(), beside.image()) {
-                return Err(differ(now, &difference));
+                let found = difference::described(&difference, now);
+                return Err(Failure::new(Code::EnginesDiffer, format!("the engines differ\n  {found}")));
             }
         }
+        let mut closed = false;
         for (path, trace) in &mut outputs {
-            trace.record(now, simulation.image()).map_err(|error| cannot_write(path, &error))?;
+            match trace.record(now, simulation.image()).map_err(|error| cannot_write(path, &error)) {
+                Err(Failure::Closed) => closed = true,
+                result => result?,
+            }
+        }
+        // That nobody reads the standard output any more is no reason to leave the files unwritten.
+        if closed {
+            outputs.retain(|(path, _)| *path != Path::new("-"));
+            if outputs.is_empty() {
+                return Err(Failure::Closed);
+            }
         }
     }
     for (path, mut trace) in outputs {
-        trace.finish().map_err(|error| cannot_write(path, &error))?;
+        unless_closed(trace.finish().map_err(|error| cannot_write(path, &error)))?;
     }
-    files.into_iter().try_for_each(WholeFile::finish)
+    files.into_iter().try_for_each(|file| unless_closed(file.finish()))
+}
+
+/// A result in which a closed standard output is none.
+fn unless_closed(result: Result<(), Failure>) -> Result<(), Failure> {
+    match result {
+        Err(Failure::Closed) => Ok(()),
+        result => result,
+    }
 }
 
 /// A format of traces.
@@ -220,23 +254,4 @@ impl Engines {
             Engine::Both => Self { first: interpreted(), second: Some(compiled()?) },
         })
     }
-}
-
-/// What is said when the engines differ.
-fn differ(now: i64, difference: &Difference) -> Failure {
-    let values = match difference.values {
-        Some((first, second)) => format!("{first:?} interpreted, {second:?} compiled"),
-        None => format!("{:02x?} interpreted, {:02x?} compiled", difference.bytes.0, difference.bytes.1),
-    };
-    let rung = match &difference.rung {
-        Some((label, line)) => format!(", written last by {label} in line {line}"),
-        None => String::new(),
-    };
-    let message = format!(
-        "the engines differ after the scan at {} ms: {} is {values}{rung} ({} more differ)",
-        Milliseconds(now),
-        difference.name,
-        difference.others
-    );
-    Failure::new(Code::EnginesDiffer, message)
 }

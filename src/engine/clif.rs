@@ -15,6 +15,8 @@ mod integer;
 mod lower;
 mod place;
 mod real;
+#[cfg(all(test, feature = "all-targets"))]
+mod targets;
 #[cfg(test)]
 mod tests;
 
@@ -29,12 +31,17 @@ use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_frontend::FunctionBuilderContext;
 use target_lexicon::Architecture;
 
-use crate::logic::{Binary, Program};
+use crate::logic::{Binary, Program, verify};
+use lower::Built;
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
 /// they fill the six registers for arguments of x86-64; with eight of them code is 2 bytes a rung shorter, but has
 /// more instructions and runs no faster.
 pub const BASES: usize = 5;
+
+/// Values of a chunk that may wait for their use at one time. Cranelift's time grows with the square of their number,
+/// and the stack by 8 bytes with each, which the code does not probe. A rung of people has some ten.
+pub const ALIVE: usize = 4096;
 
 /// Why there is no code.
 #[derive(Debug)]
@@ -45,7 +52,7 @@ pub enum CompileError {
     Chunk {
         /// The sections of the chunk.
         sections: Range<usize>,
-        /// What Cranelift says.
+        /// What Cranelift says, or which limit of ours is passed.
         reason: String,
     },
     /// No executable memory was to be had.
@@ -137,6 +144,7 @@ pub fn flags() -> Result<settings::Flags, SetError> {
 pub struct Compiler<'a> {
     program: &'a Program,
     isa: &'a dyn TargetIsa,
+    target: Target,
     context: Context,
     builder_context: FunctionBuilderContext,
 }
@@ -150,16 +158,27 @@ impl fmt::Debug for Compiler<'_> {
 impl<'a> Compiler<'a> {
     /// A compiler of a verified program for a target.
     pub fn new(program: &'a Program, isa: &'a dyn TargetIsa) -> Self {
-        Self { program, isa, context: Context::new(), builder_context: FunctionBuilderContext::new() }
+        debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
+        let (context, builder_context) = (Context::new(), FunctionBuilderContext::new());
+        Self { program, isa, target: Target::of(isa), context, builder_context }
+    }
+
+    /// The same, but with code written as for RISC-V, so that what only that target gets can be run in tests here.
+    #[cfg(test)]
+    pub(in crate::engine) fn written_for_riscv64(self) -> Self {
+        Self { target: Target::RISCV64, ..self }
     }
 
     /// Compiles one of the program's [chunks](Program::chunks).
     ///
     /// # Errors
-    /// [`CompileError::Chunk`] when Cranelift's limits are passed.
+    /// [`CompileError::Chunk`] when Cranelift's limits or [`ALIVE`] are passed.
     pub fn chunk(&mut self, sections: Range<usize>) -> Result<Chunk, CompileError> {
-        let bases = self.build(sections.clone());
+        let Built { bases, alive } = self.build(sections.clone());
         let refused = |reason: String| CompileError::Chunk { sections: sections.clone(), reason };
+        if alive > ALIVE {
+            return Err(refused(format!("{alive} values are needed at one time, and at most {ALIVE} may be")));
+        }
         let compiled = generate(&mut self.context, self.isa).map_err(|error| refused(error.to_string()))?;
         if !compiled.buffer.relocs().is_empty() {
             return Err(refused("the code refers to something outside of itself".to_owned()));
@@ -178,11 +197,11 @@ impl<'a> Compiler<'a> {
     }
 
     /// Makes the function of a chunk in `self.context`.
-    fn build(&mut self, sections: Range<usize>) -> [u32; BASES] {
+    fn build(&mut self, sections: Range<usize>) -> Built {
         self.context.clear();
         let name = UserFuncName::user(0, u32::try_from(sections.start).unwrap_or(u32::MAX));
         self.context.func = Function::with_name_signature(name, signature(self.isa));
-        lower::chunk(self.program, sections, self.isa, &mut self.context.func, &mut self.builder_context)
+        lower::chunk(self.program, sections, self.isa, self.target, &mut self.context.func, &mut self.builder_context)
     }
 }
 
@@ -222,7 +241,7 @@ pub fn text(program: &Program, isa: &dyn TargetIsa) -> String {
     let mut compiler = Compiler::new(program, isa);
     let mut out = String::new();
     for sections in program.chunks() {
-        let bases = compiler.build(sections.clone());
+        let Built { bases, .. } = compiler.build(sections.clone());
         out.push_str(&format!(
             "; sections {} to {}, bases at image + {bases:?}\n",
             sections.start,
@@ -259,7 +278,7 @@ pub(crate) fn heading(program: &Program, section: usize, comment: &str) -> Strin
 struct Target {
     /// Whether the low byte of a 4-byte load at any address is the byte there, and the load can be part of AND and OR.
     wide_loads: bool,
-    /// Whether a select becomes a branch, so that masks are wanted.
+    /// Whether a select, and a rotation, becomes a branch, so that masks are wanted.
     select_branches: bool,
     /// How far below and above a pointer an access is short.
     below: u32,
@@ -267,10 +286,12 @@ struct Target {
 }
 
 impl Target {
+    const RISCV64: Self = Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 };
+
     fn of(isa: &dyn TargetIsa) -> Self {
         match isa.triple().architecture {
             Architecture::X86_64 => Self { wide_loads: true, select_branches: false, below: 128, above: 127 },
-            Architecture::Riscv64(_) => Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 },
+            Architecture::Riscv64(_) => Self::RISCV64,
             _ => Self { wide_loads: false, select_branches: false, below: 0, above: 4095 },
         }
     }

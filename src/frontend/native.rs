@@ -22,11 +22,15 @@ use crate::source::Source;
 /// whatever walks the program.
 pub const MAXIMUM_DEPTH: usize = 128;
 
+/// How many words, signs and comments a file may have, those copied to the names of one declaration included. Each makes
+/// at most some hundred bytes of a program, so that no file takes more than a few gigabytes.
+pub const MOST_TOKENS: usize = 1 << 22;
+
 /// How many diagnostics one run gives before it stops reading.
 pub const MOST_DIAGNOSTICS: usize = 200;
 
 /// Reads native text. After a syntax error it goes on at the next declaration or rung, and the program holds the
 /// others.
 pub fn parse(source: &Source) -> Parsed {
-    parser::Parser::new(source).program()
+    parser::Parser::new(source, MOST_TOKENS).program()
 }

@@ -154,6 +154,21 @@ fn simplify_computes_constants_and_turns_comparisons_round() {
 }
 
 #[test]
+fn simplify_turns_no_comparison_of_reals_round_for_a_nan_is_neither_less_nor_not_less() {
+    let text = after(
+        "simplify",
+        &[|logic, s| {
+            let count = logic.load(s[5]);
+            let real = logic.convert(count, Elementary::Real);
+            let less = logic.compare(Compare::Less, real, real);
+            let not_less = logic.not(less);
+            logic.store(s[0], not_less);
+        }],
+    );
+    assert_eq!(text, "v0 = n; v1 = REAL(v0); v2 = lt v1 v1; v3 = not v2; a := v3");
+}
+
+#[test]
 fn gather_inverts_once() {
     let text = after(
         "gather",

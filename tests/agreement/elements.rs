@@ -52,6 +52,18 @@ fn bits(program: &Program, watched: &str, a: &str, b: &str) -> String {
     trace(program, watched, a, b).iter().map(|value| if value.is_true() { '1' } else { '0' }).collect()
 }
 
+/// Runs the same on every engine.
+fn engines_agree(program: &Program, a: &str, b: &str) {
+    let checked = checked(program).unwrap();
+    let mut rig = Rig::new(&checked).unwrap();
+    for (scan, (a, b)) in a.bytes().zip(b.bytes()).enumerate() {
+        rig.set("a", Value::bool(a == b'1'));
+        rig.set("b", Value::bool(b == b'1'));
+        let same = rig.scan(i64::try_from(scan).unwrap() * 1_000_000_000);
+        same.unwrap_or_else(|difference| panic!("scan {scan}: {difference:?}"));
+    }
+}
+
 fn through(kind: ContactKind) -> String {
     let program = drawn(vec![vec![contact("b"), contact_of(kind, "a"), coil(CoilKind::Plain, "x")]]);
     bits(&program, "x", "0011010110", "1111111000")
@@ -200,6 +212,18 @@ fn a_circuit_at_a_pin_starts_at_the_left_rail_and_runs_whatever_the_power_is() {
     let program = drawn(vec![vec![contact("a"), latch, coil(CoilKind::Plain, "x")]]);
     assert_eq!(bits(&program, "x", "010010", "000110"), "011000");
     assert_eq!(bits(&program, "y", "010010", "000110"), "000110");
+}
+
+#[test]
+fn a_call_runs_with_what_a_call_of_the_same_instance_at_one_of_its_pins_left_on_the_others() {
+    let inner = vec![contact("b"), call("s", StandardBlock::Rs, Vec::new()), contact_of(ContactKind::Closed, "b")];
+    let circuit = Circuit { branches: vec![branch(inner)], span: NOWHERE };
+    let latch = call("s", StandardBlock::Rs, vec![argument("R1", Wire::Circuit(circuit))]);
+    let program = drawn(vec![vec![contact("a"), latch, coil(CoilKind::Plain, "x")]]);
+    let (a, b) = ("1011", "0100");
+    // S of the outer call is `a` at first, and then `b`, from the inner one.
+    assert_eq!(bits(&program, "x", a, b), "0100");
+    engines_agree(&program, a, b);
 }
 
 #[test]

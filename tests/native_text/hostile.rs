@@ -203,7 +203,8 @@ fn nesting_is_read_to_the_limit_and_no_deeper() {
         print_and_check(&parse_well(&nested(deepest)));
         let codes = |text: &str| parse(text).1.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>();
         assert_eq!(codes(&nested(MAXIMUM_DEPTH + 1)), [Code::TooDeep], "{open}");
-        for depth in [100_000, 1_000_000] {
+        // More would be more tokens than a text may have.
+        for depth in [100_000, 400_000] {
             let (program, diagnostics) = parse(&nested(depth));
             let codes: Vec<_> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
             assert_eq!(codes, [Code::TooDeep], "{open}");

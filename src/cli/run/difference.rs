@@ -20,7 +20,7 @@ pub(super) fn leave(
     path: &Path,
 ) -> Result<Failure, Failure> {
     let now = replay.scans.last().map_or(0, |scan| scan.now);
-    let reason = format!("{}, after the scan at {}", described(difference), time::exact(now));
+    let reason = described(difference, now);
     replay.program = program.0.display().to_string();
     replay.source_hash = source_hash(program.1);
     replay.reason.clone_from(&reason);
@@ -33,8 +33,8 @@ pub(super) fn leave(
     Ok(Failure::new(Code::EnginesDiffer, message))
 }
 
-/// The variable, its values and the rung that writes it.
-fn described(difference: &Difference) -> String {
+/// The variable, its values, the rung that writes it and the time of the scan.
+pub(in crate::cli) fn described(difference: &Difference, now: i64) -> String {
     let bytes = format!("{:02x?} interpreted, {:02x?} compiled", difference.bytes.0, difference.bytes.1);
     let values = match difference.values.map(|(first, second)| (points::shown(first), points::shown(second))) {
         Some((first, second)) if first != second => format!("{first} interpreted, {second} compiled"),
@@ -47,7 +47,7 @@ fn described(difference: &Difference) -> String {
         0 => String::new(),
         others => format!(" (and {others} more)"),
     };
-    format!("{}: {values}{rung}{others}", difference.name)
+    format!("{}: {values}{rung}{others}, after the scan at {}", difference.name, time::exact(now))
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! The live view of a running program on a terminal.
 //!
-//! The terminal must be as it was before, however the view is left. What is drawn is in [`frame`], and pure.
+//! The terminal must be as it was before, however the view is left, and one that goes away must end the run. What is
+//! drawn is in [`frame`], and pure.
 
 mod frame;
 
 use std::io::{self, Write};
 use std::panic;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
 use std::time::Duration;
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -37,17 +40,47 @@ pub(super) fn watch<E: Scan + Send + 'static>(
 ) -> Result<(), Failure> {
     let failed = |error: io::Error| Failure::new(Code::CannotWrite, format!("the terminal cannot be used: {error}"));
     let _screen = Screen::enter().map_err(failed)?;
+    let keys = keys().map_err(failed)?;
     let mut view = View { points, selected: None, image: Vec::new() };
     while !machine.is_over() {
         view.draw(&machine.shared, title).map_err(failed)?;
-        if event::poll(REFRESH).map_err(failed)? {
-            match event::read().map_err(failed)? {
-                Event::Key(key) if key.kind != KeyEventKind::Release && view.key(key, &machine.shared) => break,
-                _ => {}
-            }
+        match keys.recv_timeout(REFRESH) {
+            Ok(Press::Key(key)) if view.key(key, &machine.shared) => break,
+            Ok(Press::Key(_) | Press::Other) | Err(RecvTimeoutError::Timeout) => {}
+            Ok(Press::Failed(error)) => return Err(failed(error)),
+            Err(RecvTimeoutError::Disconnected) => return Err(failed(io::ErrorKind::UnexpectedEof.into())),
         }
     }
     Ok(())
+}
+
+/// What the terminal sent.
+#[derive(Debug)]
+enum Press {
+    Key(KeyEvent),
+    /// Something that only wants a new drawing, such as another size.
+    Other,
+    Failed(io::Error),
+}
+
+/// What the terminal sends, read by a thread of its own: reading from a terminal that has gone may never return,
+/// and drawing on it then still tells.
+fn keys() -> io::Result<Receiver<Press>> {
+    let (sender, keys) = mpsc::sync_channel(64);
+    thread::Builder::new().name("rung-keys".to_owned()).spawn(move || {
+        loop {
+            let press = match event::read() {
+                Ok(Event::Key(key)) if key.kind != KeyEventKind::Release => Press::Key(key),
+                Ok(_) => Press::Other,
+                Err(error) => Press::Failed(error),
+            };
+            let failed = matches!(press, Press::Failed(_));
+            if sender.send(press).is_err() || failed {
+                return;
+            }
+        }
+    })?;
+    Ok(keys)
 }
 
 /// The terminal in the view's hands; dropping it, and any panic, gives it back.

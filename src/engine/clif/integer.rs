@@ -173,6 +173,9 @@ impl Lowering<'_, '_> {
 
     /// The amount counts modulo the width, which is what Cranelift's rotations do.
     fn rotate(&mut self, op: Binary, ty: Elementary, a: Value, amount: Value) -> Value {
+        if self.target.select_branches {
+            return self.rotate_by_shifts(op, ty, a, amount);
+        }
         let exact = match ty.size() {
             1 => Some(types::I8),
             2 => Some(types::I16),
@@ -185,5 +188,18 @@ impl Lowering<'_, '_> {
             self.builder.ins().rotr(value, amount)
         };
         if exact.is_some() { self.builder.ins().uextend(holder(ty), value) } else { value }
+    }
+
+    /// Two shifts whose amounts add up to the width, or are both 0.
+    fn rotate_by_shifts(&mut self, op: Binary, ty: Elementary, a: Value, amount: Value) -> Value {
+        let within = self.integer_constant(types::I32, u64::from(ty.bits()) - 1);
+        let rest = self.builder.ins().ineg(amount);
+        let amount = self.builder.ins().band(amount, within);
+        let rest = self.builder.ins().band(rest, within);
+        let (left, right) = if op == Binary::RotateLeft { (amount, rest) } else { (rest, amount) };
+        let up = self.builder.ins().ishl(a, left);
+        let down = self.builder.ins().ushr(a, right);
+        let value = self.builder.ins().bor(up, down);
+        self.canonical(ty, value)
     }
 }

@@ -16,15 +16,23 @@ use super::{BASES, Target, location_of};
 use crate::elementary::Elementary;
 use crate::logic::{Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
 
-/// Fills an empty function with a chunk; gives the offsets of the pointers that it takes.
+/// What was learnt of a chunk on the way.
+pub(super) struct Built {
+    /// The offsets of the pointers that it takes.
+    pub(super) bases: [u32; BASES],
+    /// The most values that wait for a use at one time.
+    pub(super) alive: usize,
+}
+
+/// Fills an empty function with a chunk.
 pub(super) fn chunk(
     program: &Program,
     sections: Range<usize>,
     isa: &dyn TargetIsa,
+    target: Target,
     function: &mut Function,
     context: &mut FunctionBuilderContext,
-) -> [u32; BASES] {
-    let target = Target::of(isa);
+) -> Built {
     let bases = place::bases(program, sections.clone(), target);
     let mut builder = FunctionBuilder::new(function, context);
     let block = builder.create_block();
@@ -52,6 +60,8 @@ pub(super) fn chunk(
         pointers,
         held: vec![None; end - first],
         uses,
+        alive: 0,
+        most_alive: 0,
         pending: HashMap::new(),
         stored: Stored::before(program, sections.start),
         section: sections.start,
@@ -65,7 +75,7 @@ pub(super) fn chunk(
     }
     lowering.builder.ins().return_(&[]);
     lowering.builder.finalize(isa.frontend_config());
-    bases
+    Built { bases, alive: lowering.most_alive }
 }
 
 pub(super) struct Lowering<'a, 'f> {
@@ -81,6 +91,9 @@ pub(super) struct Lowering<'a, 'f> {
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
     uses: Vec<u32>,
+    /// How many values are held that have a use to come, now and at most.
+    alive: usize,
+    most_alive: usize,
     /// Loads of a slot since it was last stored.
     pending: HashMap<SlotId, Vec<ValueId>>,
     stored: Stored,
@@ -118,7 +131,13 @@ impl Lowering<'_, '_> {
         };
         let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
         let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
-        self.held[index - self.first] = Some(value);
+        self.hold(index - self.first, value);
+    }
+
+    fn hold(&mut self, place: usize, value: Value) {
+        self.held[place] = Some(value);
+        self.alive += usize::from(self.uses[place] > 0);
+        self.most_alive = self.most_alive.max(self.alive);
     }
 
     /// The same value, but such that loads below it can still become part of the instructions that use them, though it
@@ -173,6 +192,7 @@ impl Lowering<'_, '_> {
         let place = id.index() - self.first;
         self.uses[place] = self.uses[place].saturating_sub(1);
         if let Some(value) = self.held[place] {
+            self.alive -= usize::from(self.uses[place] == 0);
             return value;
         }
         let Instruction { ty, op } = self.program.instructions[id.index()];
@@ -182,7 +202,7 @@ impl Lowering<'_, '_> {
                 let (value, wide) = load(self, slot);
                 // A wide load costs nothing where it is used, and a register where it is kept.
                 if self.uses[place] > 0 && !wide {
-                    self.held[place] = Some(value);
+                    self.hold(place, value);
                 }
                 value
             }
@@ -260,7 +280,8 @@ impl Lowering<'_, '_> {
         for load in self.pending.remove(&id).unwrap_or_default() {
             let place = load.index() - self.first;
             if self.uses[place] > 0 && self.held[place].is_none() {
-                self.held[place] = Some(self.load(id).0);
+                let value = self.load(id).0;
+                self.hold(place, value);
             }
         }
         let (pointer, way) = self.address(slot.offset);

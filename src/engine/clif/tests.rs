@@ -1,11 +1,11 @@
 //! What the functions look like: text, pointers, and loads that are part of the instructions that use them.
 
 use super::place::Stored;
-use super::{BRANCHING, Chunk, Compiler, text};
+use super::{ALIVE, BRANCHING, Chunk, Compiler, text};
 use crate::elementary::{Elementary, Value};
 use crate::engine::disassemble;
 use crate::engine::jit::host_isa;
-use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
+use crate::logic::{Area, Binary, Builder, CHUNK_SECTIONS, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
 
 /// A program of sections over `slots` BOOLs, each made by `section`.
 fn booleans(slots: u32, sections: u32, mut section: impl FnMut(&mut Builder, u32, &[SlotId])) -> Program {
@@ -136,4 +136,17 @@ fn random_programs_have_text_with_every_section_that_stores() {
             }
         }
     }
+}
+
+#[test]
+fn the_page_on_machine_code_lists_what_branches() {
+    let page = include_str!("../../../docs/machine-code.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    let expected: Vec<String> = BRANCHING
+        .iter()
+        .map(|row| format!("| `{}` | {} | {} |", row.op.mnemonic(), row.architectures.join(", "), row.reason))
+        .collect();
+    assert_eq!(rows, expected);
+    assert!(page.contains(&format!("At most {ALIVE} values")));
+    assert!(page.contains(&format!("each {CHUNK_SECTIONS} of them make a chunk")));
 }

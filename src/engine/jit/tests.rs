@@ -2,20 +2,31 @@
 
 use rung_runtime::Scan;
 
-use super::{Jit, host_isa};
+use super::memory::Code;
+use super::{CompileError, Jit, host_isa};
 use crate::elementary::{Elementary, Value};
-use crate::engine::clif::BRANCHING;
+use crate::engine::clif::{BRANCHING, Compiler};
 use crate::engine::disassemble;
 use crate::engine::interp::Textbook;
-use crate::logic::{Area, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
+use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
 use crate::opt;
 
 fn compile(program: &Program) -> Jit {
     Jit::compile(program).unwrap_or_else(|error| panic!("{}: {error}", program.name))
 }
 
-fn agrees(program: &Program, seed: u64) {
-    let (mut textbook, mut jit) = (Textbook::new(program), compile(program));
+/// Code as RISC-V gets it, masks in place of selects, for this machine.
+fn compile_as_for_riscv64(program: &Program) -> Jit {
+    let isa = host_isa().expect("a host with a back end");
+    let mut compiler = Compiler::new(program, &*isa).written_for_riscv64();
+    let chunks: Result<Vec<_>, _> = program.chunks().into_iter().map(|sections| compiler.chunk(sections)).collect();
+    let chunks = chunks.unwrap_or_else(|error| panic!("{}: {error}", program.name));
+    let code = Code::install(&chunks, program.layout.size() as usize).expect("executable memory");
+    Jit { chunks, code }
+}
+
+fn agrees(program: &Program, mut jit: Jit, seed: u64) {
+    let mut textbook = Textbook::new(program);
     for round in 0..8 {
         let mut expected = random::image(&program.layout, seed ^ round << 32);
         let mut actual = expected.clone();
@@ -40,7 +51,16 @@ fn agrees(program: &Program, seed: u64) {
 #[test]
 fn compiled_code_computes_what_the_textbook_does_over_the_whole_image() {
     for seed in 0..600 {
-        agrees(&random::program(seed), seed);
+        let program = random::program(seed);
+        agrees(&program, compile(&program), seed);
+    }
+}
+
+#[test]
+fn code_as_for_a_target_without_selects_computes_the_same() {
+    for seed in 2000..2300 {
+        let program = random::program(seed);
+        agrees(&program, compile_as_for_riscv64(&program), seed);
     }
 }
 
@@ -141,4 +161,38 @@ fn a_rung_of_a_hundred_thousand_contacts_compiles_and_runs() {
     program.layout.slot(coil).write(&mut image, Value::bool(false));
     compile(&program).scan(&mut image, 0);
     assert!(program.layout.slot(coil).read(&image).is_true());
+}
+
+#[test]
+fn a_chunk_that_needs_too_many_values_at_one_time_is_refused_at_once() {
+    let spread = |values: i64| {
+        let mut layout = LayoutBuilder::new();
+        let (ty, initial) = (Elementary::Time, Value::time(0));
+        let slot = Slot { name: "least".into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+        let least = layout.slot(slot);
+        let mut logic = Builder::new("spread", layout.finish(None).expect("a small image"));
+        let now = logic.now();
+        // All are alive at once: the first is used last.
+        let live: Vec<_> = (0..values)
+            .map(|value| {
+                let value = logic.constant(Value::time(value));
+                logic.binary(Binary::Subtract, now, value)
+            })
+            .collect();
+        let all = live.into_iter().rev().reduce(|a, b| logic.binary(Binary::Minimum, a, b)).expect("some");
+        logic.store(least, all);
+        logic.end_section(Origin { label: "r".into(), line: 1 });
+        logic.finish()
+    };
+    let small = spread(1000);
+    let mut image = small.layout.initial_image();
+    compile(&small).scan(&mut image, 5000);
+    assert_eq!(small.layout.slots()[0].read(&image), Value::time(4001));
+    match Jit::compile(&spread(40_000)) {
+        Err(CompileError::Chunk { sections, reason }) => {
+            assert_eq!(sections, 0..1);
+            assert_eq!(reason, "40000 values are needed at one time, and at most 4096 may be");
+        }
+        other => panic!("{other:?}"),
+    }
 }

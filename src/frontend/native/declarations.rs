@@ -33,16 +33,18 @@ impl Parser<'_> {
                 break;
             }
         }
-        let clauses_start = self.end;
+        let (clauses_start, tokens_before) = (self.end, self.tokens_left);
         let clauses = self.clauses()?;
         let span = self.since(start.start);
         // A long clause behind many names must not make a large program of a small file.
         let copied = (names.len() - 1).saturating_mul(self.since(clauses_start).range().len());
-        if copied > self.copies_left {
+        let copied_tokens = (names.len() - 1).saturating_mul(tokens_before - self.tokens_left);
+        if copied > self.copies_left || copied_tokens > self.tokens_left {
             let problem = Diagnostic::new(Code::FileTooLarge, span, "these clauses are too long for so many names");
             return self.give_up(problem.hint("declare the variables one by one, or in smaller groups"));
         }
         self.copies_left -= copied;
+        self.tokens_left -= copied_tokens;
         self.item_end("a clause (`: TYPE`, `at`, `:=`, `retain`), another declaration or a rung")?;
         let mut variable = Variable {
             class,

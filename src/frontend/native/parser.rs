@@ -16,6 +16,9 @@ use crate::source::{Source, Span};
 /// a long list of names with a long clause would take memory by the square of the file.
 const COPIES_PER_BYTE: usize = 16;
 
+/// How many bytes of clauses any file may copy.
+const MOST_COPIES: usize = 256 << 20;
+
 /// A syntax error that was reported: the declaration or rung around it is given up.
 pub(super) struct GivenUp;
 
@@ -38,6 +41,8 @@ pub(super) struct Parser<'a> {
     too_deep: bool,
     /// Bytes that lists of names may still copy of the clauses behind them.
     pub(super) copies_left: usize,
+    /// Tokens that may still be read or copied.
+    pub(super) tokens_left: usize,
     gap: Gap,
 }
 
@@ -53,8 +58,11 @@ struct Gap {
 }
 
 impl<'a> Parser<'a> {
-    pub(super) fn new(source: &'a Source) -> Self {
-        let stem = Path::new(source.name()).file_stem().and_then(|stem| stem.to_str()).unwrap_or("main");
+    /// A parser of a source that may have so many tokens.
+    pub(super) fn new(source: &'a Source, most_tokens: usize) -> Self {
+        let stem = Path::new(source.name()).file_stem().and_then(|stem| stem.to_str());
+        // The standard input has no name to take.
+        let stem = stem.filter(|stem| *stem != "-").unwrap_or("main");
         // No name holds what its quoted form could not.
         let stem = stem.replace(['`', '\n', '\r'], "_");
         let mut parser = Self {
@@ -72,7 +80,8 @@ impl<'a> Parser<'a> {
             diagnostics: Vec::new(),
             depth: 0,
             too_deep: false,
-            copies_left: COPIES_PER_BYTE * source.text().len() + (1 << 16),
+            copies_left: (COPIES_PER_BYTE * source.text().len() + (1 << 16)).min(MOST_COPIES),
+            tokens_left: most_tokens,
             gap: Gap { settled: 0, room: false },
         };
         parser.advance();
@@ -149,6 +158,10 @@ impl<'a> Parser<'a> {
         loop {
             self.token = self.lexer.token();
             let span = self.token.span;
+            if self.token.kind != Kind::End {
+                let Some(left) = self.tokens_left.checked_sub(1) else { return self.too_large() };
+                self.tokens_left = left;
+            }
             let problem = match self.token.kind {
                 Kind::Comment => {
                     let text = self.source.slice(span).get(2..).unwrap_or("").trim().to_owned();
@@ -173,6 +186,18 @@ impl<'a> Parser<'a> {
             self.report(problem);
             return;
         }
+    }
+
+    fn too_large(&mut self) {
+        let message = "the file has too many words and signs: the rest of it was not read";
+        self.report(Diagnostic::new(Code::FileTooLarge, self.token.span, message));
+        self.stop();
+    }
+
+    /// Leaves the rest of the file unread.
+    fn stop(&mut self) {
+        self.lexer.stop();
+        self.token.kind = Kind::End;
     }
 
     fn unknown(&self, span: Span) -> Diagnostic {
@@ -293,8 +318,7 @@ impl<'a> Parser<'a> {
         } else if self.diagnostics.len() == MOST_DIAGNOSTICS {
             let message = format!("more than {MOST_DIAGNOSTICS} errors: the rest of the file was not read");
             self.diagnostics.push(Diagnostic::new(Code::TooManyDiagnostics, problem.span, message));
-            self.lexer.stop();
-            self.token.kind = Kind::End;
+            self.stop();
         }
     }
 
@@ -371,4 +395,37 @@ fn excerpt(text: &str) -> String {
         text.chars().take(LONGEST).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect();
     let more = if text.chars().nth(LONGEST).is_some() { "…" } else { "" };
     format!("`{shown}{more}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(text: &str, most_tokens: usize) -> Vec<Code> {
+        let source = Source::new("x.rung", text);
+        Parser::new(&source, most_tokens).program().diagnostics.iter().map(|problem| problem.code).collect()
+    }
+
+    #[test]
+    fn a_file_of_more_tokens_than_permitted_is_not_read_to_its_end() {
+        let text = "-- c\ninput a\noutput o\nrung\n  a (o) -- c\n";
+        assert_eq!(codes(text, 11), []);
+        assert_eq!(codes(text, 10), [Code::FileTooLarge]);
+        let source = Source::new("x.rung", text);
+        assert_eq!(Parser::new(&source, 4).program().program.rungs, []);
+    }
+
+    #[test]
+    fn tokens_that_a_list_of_names_copies_count() {
+        // 14 that are read, and twice the 7 behind the colon.
+        let text = "var a, b, c : INT := 1 + 1 + 1\n";
+        assert_eq!(codes(text, 28), []);
+        assert_eq!(codes(text, 27), [Code::FileTooLarge]);
+    }
+
+    #[test]
+    fn a_program_from_the_standard_input_is_called_main_where_it_says_nothing() {
+        let name = |file| Parser::new(&Source::new(file, "rung\n"), 10).program().program.name.text;
+        assert_eq!(["-", "folder/pump.rung", ""].map(name), ["main", "pump", "main"]);
+    }
 }

@@ -105,6 +105,8 @@ impl Parser<'_> {
                 branch.elements.push(element);
             }
         }
+        // Of many branches with one element each, the room for more would take most of the memory.
+        branch.elements.shrink_to_fit();
         branch.span = self.since(start);
         Ok(branch)
     }

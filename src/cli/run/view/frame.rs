@@ -91,21 +91,24 @@ fn head(state: &State<'_>) -> Vec<String> {
 /// Items in columns below a heading; nothing where there are none.
 fn section(lines: &mut Vec<String>, heading: &str, items: impl Iterator<Item = String>, width: usize) {
     let columns = (width / COLUMN).max(1);
-    let items: Vec<String> = items.collect();
-    if !items.is_empty() {
+    let mut items = items.peekable();
+    if items.peek().is_some() {
         lines.push(String::new());
         lines.push(heading.to_owned());
     }
-    for row in items.chunks(columns) {
-        // The last of a row may be as long as it is.
-        let mut line = String::new();
-        for item in row {
-            let start = line.width().next_multiple_of(COLUMN);
+    // One that is longer than a column takes several.
+    let mut line = String::new();
+    for item in items {
+        let start = if line.is_empty() { 0 } else { (line.width() + 1).next_multiple_of(COLUMN) };
+        if start > 0 && (start + item.width() > width || start / COLUMN >= columns) {
+            lines.push(std::mem::take(&mut line));
+        } else {
             line.extend(std::iter::repeat_n(' ', start - line.width()));
-            line.push_str(item);
-            line.push(' ');
         }
-        lines.push(line.trim_end().to_owned());
+        line.push_str(&item);
+    }
+    if !line.is_empty() {
+        lines.push(line);
     }
 }
 
@@ -245,6 +248,18 @@ blocks
      delay            TON    ● Q         ███░░░░░░░░░  1.5 s of 6.0 s
 a key in brackets toggles or selects, + and - change a selected number";
         assert_eq!(drawn(70, 30).join("\n"), expected);
+    }
+
+    #[test]
+    fn a_long_item_takes_columns_of_its_own_and_none_is_cut_off() {
+        let items = ["     a = 1", "     a_long_name = T#1m30s500ms", "     b", "     c", "     the_last = 12345678"];
+        let mut lines = Vec::new();
+        section(&mut lines, "variables", items.map(str::to_owned).into_iter(), 80);
+        let expected = "
+variables
+     a = 1                     a_long_name = T#1m30s500ms
+     b                         c                         the_last = 12345678";
+        assert_eq!(lines.join("\n"), expected);
     }
 
     #[test]

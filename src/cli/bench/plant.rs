@@ -1,0 +1,60 @@
+//! What a measured program is wired to: inputs that change at random, the same for every engine.
+
+use std::time::{Duration, Instant};
+
+use rung_runtime::Scan;
+
+use super::to_f64;
+use crate::elementary::{Elementary, Value};
+use crate::logic::{Area, Program, Slot};
+
+/// An image whose BOOL inputs change at random.
+pub(super) struct Plant<'a> {
+    image: Vec<u8>,
+    inputs: Vec<&'a Slot>,
+    now: i64,
+    random: u64,
+}
+
+/// Time from one scan to the next, in nanoseconds.
+const CYCLE: i64 = 1_000_000;
+/// Scans between two changes of the inputs, so that changing them costs next to nothing beside the scans.
+const SCANS_PER_CHANGE: u64 = 16;
+
+impl<'a> Plant<'a> {
+    pub(super) fn new(program: &'a Program) -> Self {
+        let slots = program.layout.slots().iter();
+        let inputs = slots.filter(|slot| slot.area == Area::Input && slot.ty == Elementary::Bool).collect();
+        Self { image: program.layout.initial_image(), inputs, now: 0, random: 0x9E37_79B9_7F4A_7C15 }
+    }
+
+    fn next_random(&mut self) -> u64 {
+        // xorshift64: cheap, and the same on every machine.
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 7;
+        self.random ^= self.random << 17;
+        self.random
+    }
+
+    /// Runs scans, at least one; gives nanoseconds a scan, without the time for changing inputs.
+    pub(super) fn run(&mut self, scan: &mut dyn Scan, scans: u64) -> f64 {
+        let mut spent = Duration::ZERO;
+        let mut left = scans;
+        while left > 0 {
+            for _ in 0..self.inputs.len().div_ceil(10) {
+                let (which, value) = (self.next_random(), self.next_random());
+                let index = usize::try_from(which % self.inputs.len() as u64).unwrap_or(0);
+                self.inputs[index].write(&mut self.image, Value::bool(value >> 63 == 1));
+            }
+            let batch = left.min(SCANS_PER_CHANGE);
+            let start = Instant::now();
+            for _ in 0..batch {
+                scan.scan(&mut self.image, self.now);
+                self.now += CYCLE;
+            }
+            spent += start.elapsed();
+            left -= batch;
+        }
+        spent.as_secs_f64() * 1e9 / to_f64(scans)
+    }
+}
