@@ -24,7 +24,7 @@ mod network;
 mod place;
 mod report;
 mod scope;
-mod spelling;
+pub(crate) mod spelling;
 mod types;
 mod usage;
 

@@ -9,6 +9,7 @@ mod check;
 mod duration;
 mod fmt;
 mod generate;
+mod help;
 mod load;
 mod output;
 mod run;
@@ -24,7 +25,7 @@ pub(crate) use output::{Failure, WholeFile, cannot_write, print, report, write_w
 
 /// A compiler and runtime for PLC ladder diagrams.
 #[derive(Debug, Parser)]
-#[command(name = "rung", version, max_term_width = 100)]
+#[command(name = "rung", version, max_term_width = 100, disable_help_subcommand = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -40,6 +41,7 @@ enum Command {
     Show(show::Arguments),
     Run(run::Arguments),
     Sim(sim::Arguments),
+    Help(help::Arguments),
 }
 
 /// Runs the command that the process was started with, and gives its exit code: 0, or 1 when there was an error
@@ -55,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Show(arguments) => show::run(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Sim(arguments) => sim::run(arguments),
+        Command::Help(arguments) => help::run(arguments),
     };
     output::exit(result)
 }

@@ -62,6 +62,7 @@ codes! {
     CannotWrite = 104 Error "the file cannot be written",
     UnknownFormat = 105 Error "the format of the file is not known",
     BadOptions = 106 Error "options that do not go together",
+    UnknownTopic = 107 Error "the manual has no such page",
     // Syntax.
     UnexpectedToken = 201 Error "something else was expected here",
     UnexpectedCharacter = 202 Error "this character has no meaning here",

@@ -4,7 +4,7 @@
 const LONGEST: usize = 64;
 
 /// Pairs of letters that may still be compared in one run; after that there are no more suggestions.
-pub(super) struct Budget(usize);
+pub(crate) struct Budget(usize);
 
 impl Default for Budget {
     fn default() -> Self {
@@ -14,7 +14,7 @@ impl Default for Budget {
 
 /// The candidate nearest to a name, if one is near enough: a third of the name's letters may differ, at most two.
 /// Of equally near ones the first.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl Iterator<Item = &'a str>,
     budget: &mut Budget,

@@ -147,10 +147,16 @@ impl Band<'_> {
             draw_to(&mut line, command, &[start, y(from)]);
             draw_to(&mut line, 'L', &[end, y(to)]);
             let next = lane.pieces.get(index + 1);
-            // A rise that stays where it arrived took the preset time.
-            let stays = next.is_some_and(|next| {
-                matches!(next.shape, Shape::Level(_)) && next.end.saturating_sub(next.start) > cycle
+            // A rise that stays where it arrived took the preset time; one that is higher later was only held up.
+            let rises_later = lane.pieces.get(index + 2).is_some_and(|later| match later.shape {
+                Shape::Level(value) => number(value) > to,
+                Shape::Ramp { from: value, .. } => value as f64 > to,
+                Shape::Busy => false,
             });
+            let stays = !rises_later
+                && next.is_some_and(|next| {
+                    matches!(next.shape, Shape::Level(_)) && next.end.saturating_sub(next.start) > cycle
+                });
             if let Shape::Ramp { from: 0, to, .. } = piece.shape
                 && stays
             {
@@ -167,7 +173,10 @@ impl Band<'_> {
         }
         if lane.signal.ty() != Elementary::Time {
             for (number, y) in [(lane.greatest, self.high + 4.0), (least, self.low + 4.0)] {
-                let label = text(&number.to_string(), self.axis.left() - 4.0, y);
+                // A REAL in its own shortest form, not in that of the same LREAL.
+                let spelled = Value::real(lane.signal.ty(), number).map(|value| Spelled(value).to_string());
+                let label = spelled.unwrap_or_else(|| number.to_string());
+                let label = text(&label, self.axis.left() - 4.0, y);
                 group = group.add(label.set("class", "small").set("text-anchor", "end"));
             }
         }
