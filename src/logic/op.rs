@@ -225,7 +225,8 @@ operations! {
 
 operations! {
     /// Functions too large for a few instructions: compiled code calls them, all engines the same ones. Of a REAL they
-    /// are computed in LREAL and rounded once. Within a unit in the last place or so, and the same bits everywhere.
+    /// are computed in LREAL and rounded once. An LREAL is right to about a unit in the last place, the same bits
+    /// everywhere.
     Helper {
         /// The natural logarithm; minus infinity of zero, NaN below.
         Ln "ln" Reals,

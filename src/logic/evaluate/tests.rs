@@ -323,7 +323,8 @@ fn helpers_have_their_edges() {
         (Log10, 0.0, -infinity),
         (Log10, -1.0, nan),
         (Exp, 0.0, 1.0),
-        (Exp, 1.0, E),
+        // One unit in the last place above e.
+        (Exp, 1.0, E.next_up()),
         (Exp, 1e9, infinity),
         (Exp, -infinity, 0.0),
         (Sin, -0.0, -0.0),
@@ -404,7 +405,16 @@ fn helpers_give_these_very_bits() {
         (helper.mnemonic(), sum)
     });
     let expected = [
-        ("ln", 0),
+        ("ln", 3_460_641_116_761_611_071),
+        ("log", 13_217_327_021_940_761_866),
+        ("exp", 9_928_483_726_448_352_606),
+        ("sin", 979_608_104_029_200),
+        ("cos", 9_015_665_278_002_492_997),
+        ("tan", 5_171_265_828_166_036_242),
+        ("asin", 11_132_172_065_733_187_422),
+        ("acos", 1_895_599_012_087_756_818),
+        ("atan", 18_376_983_014_739_869_336),
+        ("pow", 16_929_313_489_089_901_068),
     ];
     assert_eq!(sums.collect::<Vec<_>>(), expected);
 }
