@@ -23,9 +23,10 @@ pub(super) struct Gate {
 }
 
 impl Gate {
-    pub(super) fn new(function: &Function, target: u32) -> Self {
+    /// A gate that sets `target`; `any` is some cell that always holds a BOOL, which that of the target need not before.
+    pub(super) fn new(function: &Function, target: u32, any: u32) -> Self {
         // An input that does not count must be a BOOL all the same; best one that is at hand.
-        let mut inputs = [function.inputs().first().copied().unwrap_or(target); INPUTS];
+        let mut inputs = [function.inputs().first().copied().unwrap_or(any); INPUTS];
         inputs[..function.count].copy_from_slice(function.inputs());
         Self { inputs, target, table: function.table }
     }

@@ -60,8 +60,8 @@ impl<'a> Translator<'a> {
         let mut uses = vec![0; count];
         let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
         let mut last_access = vec![0; program.layout.slots().len()];
-        // The time comes right behind the image.
-        let mut cells = vec![0; (program.layout.size() + CONSTANT_BYTES) as usize];
+        // The time comes right behind the image, and then a FALSE.
+        let mut cells = vec![0; (program.layout.size() + 2 * CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
         for (index, instruction) in program.instructions.iter().enumerate() {
             for operand in instruction.op.operands() {
@@ -224,7 +224,7 @@ impl<'a> Translator<'a> {
             Some(cell) if self.ty(value) != Elementary::Bool => {
                 self.push(Kind::copy(self.ty(value)), [cell; 3], target);
             }
-            _ => self.gates.push(Gate::new(&function, target)),
+            _ => self.gates.push(Gate::new(&function, target, self.program.layout.size() + CONSTANT_BYTES)),
         }
         self.set(value, Function::cell(target));
     }
