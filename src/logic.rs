@@ -19,7 +19,7 @@ pub mod random;
 mod verify;
 
 pub use build::Builder;
-pub use image::{Area, Layout, LayoutBuilder, Slot, SlotId};
+pub use image::{Area, Array, ArrayId, Layout, LayoutBuilder, Slot, SlotId};
 pub use op::{Binary, Compare, Domain, Helper, Instruction, Op, Unary, ValueId};
 pub use parse::parse;
 pub use print::print;

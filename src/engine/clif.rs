@@ -14,6 +14,7 @@
 //! a time that depends on their operands. It computes exactly what [`evaluate`](crate::logic::evaluate) says, with
 //! every value in integer registers; BOOL is the low byte of 8 or 32 bits, of which the others mean nothing.
 
+mod array;
 mod integer;
 mod lower;
 mod place;

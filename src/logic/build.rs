@@ -4,7 +4,8 @@
 //! that is for the passes.
 
 use super::{
-    Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary, ValueId,
+    ArrayId, Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary,
+    ValueId,
 };
 use crate::elementary::{Elementary, Value};
 
@@ -82,6 +83,21 @@ impl Builder {
     pub fn store(&mut self, slot: SlotId, value: ValueId) {
         let ty = self.program.layout.slot(slot).ty;
         self.push(ty, Op::Store(slot, value));
+    }
+
+    /// The element of an array that a LINT names, from 0.
+    pub fn load_indexed(&mut self, array: ArrayId, index: ValueId) -> ValueId {
+        self.push(self.element_type(array), Op::LoadIndexed(array, index))
+    }
+
+    /// Sets the element of an array that a LINT names, from 0.
+    pub fn store_indexed(&mut self, array: ArrayId, index: ValueId, value: ValueId) {
+        self.push(self.element_type(array), Op::StoreIndexed(array, index, value));
+    }
+
+    fn element_type(&self, array: ArrayId) -> Elementary {
+        let layout = &self.program.layout;
+        layout.slot(layout.array(array).first).ty
     }
 
     /// An operation on one operand.

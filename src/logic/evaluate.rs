@@ -98,6 +98,11 @@ fn rotate_left(ty: Elementary, a: u64, amount: u64) -> u64 {
     if amount == 0 { a } else { canonical(ty, a << amount | a >> (u64::from(ty.bits()) - amount)) }
 }
 
+/// Which of an array's `count` elements an index, a LINT, names.
+pub fn element(count: u32, index: u64) -> Option<u32> {
+    u32::try_from(index).ok().filter(|index| *index < count)
+}
+
 /// Two operands of type `ty`.
 pub fn compare(op: Compare, ty: Elementary, a: u64, b: u64) -> bool {
     fn holds<T: PartialOrd>(op: Compare, a: T, b: T) -> bool {

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use super::SlotId;
+use super::{ArrayId, SlotId};
 use crate::elementary::Elementary;
 
 /// A value: the place of the instruction that defines it in its program.
@@ -57,15 +57,24 @@ pub enum Op {
     Convert(ValueId),
     /// A pure function of one or two operands of the result's type; the second is there where it takes two.
     Call(Helper, ValueId, Option<ValueId>),
+    /// The value of an array's element, counted from 0 by a LINT; where there is none, the type's default.
+    LoadIndexed(ArrayId, ValueId),
+    /// Sets an array's element, counted from 0 by a LINT, to a value; where there is none, nothing.
+    StoreIndexed(ArrayId, ValueId, ValueId),
 }
 
 impl Op {
+    /// Whether it has a result, which stores have not.
+    pub fn has_value(self) -> bool {
+        !matches!(self, Self::Store(..) | Self::StoreIndexed(..))
+    }
+
     /// The operands, in order.
     pub fn operands(self) -> impl Iterator<Item = ValueId> {
         let operands = match self {
             Self::Constant(_) | Self::Now | Self::Load(_) => [None, None, None],
-            Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) => [Some(a), None, None],
-            Self::Binary(_, a, b) | Self::Compare(_, a, b) => [Some(a), Some(b), None],
+            Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) | Self::LoadIndexed(_, a) => [Some(a), None, None],
+            Self::Binary(_, a, b) | Self::Compare(_, a, b) | Self::StoreIndexed(_, a, b) => [Some(a), Some(b), None],
             Self::Select(a, b, c) => [Some(a), Some(b), Some(c)],
             Self::Call(_, a, b) => [Some(a), b, None],
         };
@@ -84,6 +93,8 @@ impl Op {
             Self::Select(a, b, c) => Self::Select(map(a), map(b), map(c)),
             Self::Convert(a) => Self::Convert(map(a)),
             Self::Call(helper, a, b) => Self::Call(helper, map(a), b.map(map)),
+            Self::LoadIndexed(array, a) => Self::LoadIndexed(array, map(a)),
+            Self::StoreIndexed(array, a, b) => Self::StoreIndexed(array, map(a), map(b)),
         }
     }
 }

@@ -41,6 +41,10 @@ pub(super) enum Kind {
     Compare(Compare, Elementary),
     Convert(Elementary, Elementary),
     Call(Helper, Elementary),
+    /// The operands are the index, the first element and how many there are.
+    LoadIndexed(Elementary),
+    /// The operands are the index, the value and how many elements there are; the target is the first of them.
+    StoreIndexed(Elementary),
 }
 
 impl Kind {
@@ -49,7 +53,9 @@ impl Kind {
     pub(super) fn of(instruction: Instruction, of: Elementary) -> Option<(Self, bool)> {
         let wide = matches!(of, Elementary::Lint | Elementary::Time);
         let kind = match instruction.op {
-            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) => return None,
+            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
+                return None;
+            }
             Op::Select(..) => match instruction.ty.size() {
                 1 => Self::Select8,
                 2 => Self::Select16,
@@ -112,6 +118,7 @@ impl Step {
             Kind::Unary(..) | Kind::Binary(..) | Kind::Compare(..) | Kind::Convert(..) | Kind::Call(..) => {
                 self.evaluate(cells);
             }
+            Kind::LoadIndexed(..) | Kind::StoreIndexed(..) => self.access(cells),
         }
     }
 
@@ -137,6 +144,25 @@ impl Step {
             _ => return,
         };
         write(cells, self.target, Value::from_bits(ty, bits));
+    }
+
+    /// Loads or stores an element of an array.
+    #[inline(never)]
+    fn access(&self, cells: &mut [u8]) {
+        let [index, b, count] = self.operands;
+        let element = evaluate::element(count, signed(cells, index).cast_unsigned());
+        match self.kind {
+            Kind::LoadIndexed(ty) => {
+                let value = element.map_or(Value::default_of(ty), |element| read(cells, b + element * ty.size(), ty));
+                write(cells, self.target, value);
+            }
+            Kind::StoreIndexed(ty) => {
+                if let Some(element) = element {
+                    write(cells, self.target + element * ty.size(), read(cells, b, ty));
+                }
+            }
+            _ => {}
+        }
     }
 
     fn put<const N: usize>(&self, cells: &mut [u8], bytes: [u8; N]) {
