@@ -42,7 +42,8 @@ fn the_examples_compute_the_same_everywhere_and_the_evaluator_agrees() {
     assert!(rungs >= 40, "the examples have only {rungs} rungs: this test looks at the wrong place");
 }
 
-fn examples() -> Vec<PathBuf> {
+/// The programs of `examples/`.
+pub(crate) fn examples() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let entries = std::fs::read_dir(folder).expect("the examples' folder");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -51,7 +52,8 @@ fn examples() -> Vec<PathBuf> {
     paths
 }
 
-fn source(path: &Path) -> Source {
+/// A file of text.
+pub(crate) fn source(path: &Path) -> Source {
     let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     Source::decode(path.display().to_string(), &bytes).expect("text")
 }

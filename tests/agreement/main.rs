@@ -4,6 +4,7 @@ mod elements;
 mod examples;
 mod random;
 mod steps;
+mod straight_line;
 
 #[path = "../support"]
 mod support {
