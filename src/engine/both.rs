@@ -131,8 +131,10 @@ fn last_writers(program: &Program) -> Vec<Option<usize>> {
     let mut writers = vec![None; program.layout.slots().len()];
     for section in 0..program.sections.len() {
         for instruction in &program.instructions[program.section_range(section)] {
-            if let Op::Store(slot, _) = instruction.op {
-                writers[slot.index()] = Some(section);
+            match instruction.op {
+                Op::Store(slot, _) => writers[slot.index()] = Some(section),
+                Op::StoreIndexed(array, ..) => writers[program.layout.array(array).indices()].fill(Some(section)),
+                _ => {}
             }
         }
     }

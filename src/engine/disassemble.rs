@@ -21,6 +21,8 @@ pub struct Line {
     pub text: String,
     /// Whether it jumps, branches or calls; a return does not count.
     pub jumps: bool,
+    /// Whether it calls.
+    pub calls: bool,
 }
 
 /// Decodes code for a target, up to the first bytes that are no instruction.
@@ -33,7 +35,7 @@ pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
     let mut lines = Vec::with_capacity(instructions.len());
     for instruction in instructions.iter() {
         let detail = capstone.insn_detail(instruction).map_err(|error| error.to_string())?;
-        let jump = [CS_GRP_JUMP, CS_GRP_CALL].map(|group| InsnGroupId(u8::try_from(group).unwrap_or_default()));
+        let is_of = |group| detail.groups().contains(&InsnGroupId(u8::try_from(group).unwrap_or_default()));
         let mnemonic = instruction.mnemonic().unwrap_or_default();
         let operands = instruction.op_str().unwrap_or_default();
         let returns = mnemonic.starts_with("ret") || matches!((mnemonic, operands), ("jr" | "c.jr", "ra"));
@@ -41,7 +43,8 @@ pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
             offset: instruction.address(),
             bytes: instruction.bytes().to_vec(),
             text: format!("{mnemonic} {operands}").trim_end().to_owned(),
-            jumps: !returns && detail.groups().iter().any(|group| jump.contains(group)),
+            jumps: !returns && (is_of(CS_GRP_JUMP) || is_of(CS_GRP_CALL)),
+            calls: is_of(CS_GRP_CALL),
         });
     }
     Ok(lines)

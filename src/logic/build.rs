@@ -4,7 +4,8 @@
 //! that is for the passes.
 
 use super::{
-    Binary, CHUNK_SECTIONS, Compare, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary, ValueId,
+    ArrayId, Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary,
+    ValueId,
 };
 use crate::elementary::{Elementary, Value};
 
@@ -96,6 +97,21 @@ impl Builder {
         self.store(slot, value);
     }
 
+    /// The element of an array that a LINT names, from 0.
+    pub fn load_indexed(&mut self, array: ArrayId, index: ValueId) -> ValueId {
+        self.push(self.element_type(array), Op::LoadIndexed(array, index))
+    }
+
+    /// Sets the element of an array that a LINT names, from 0.
+    pub fn store_indexed(&mut self, array: ArrayId, index: ValueId, value: ValueId) {
+        self.push(self.element_type(array), Op::StoreIndexed(array, index, value));
+    }
+
+    fn element_type(&self, array: ArrayId) -> Elementary {
+        let layout = &self.program.layout;
+        layout.slot(layout.array(array).first).ty
+    }
+
     /// An operation on one operand.
     pub fn unary(&mut self, op: Unary, a: ValueId) -> ValueId {
         self.push(self.ty(a), Op::Unary(op, a))
@@ -119,6 +135,11 @@ impl Builder {
     /// `a` as another type.
     pub fn convert(&mut self, a: ValueId, to: Elementary) -> ValueId {
         self.push(to, Op::Convert(a))
+    }
+
+    /// A helper of `a` and, where it takes two operands, `b`, which is of the same type.
+    pub fn call(&mut self, helper: Helper, a: ValueId, b: Option<ValueId>) -> ValueId {
+        self.push(self.ty(a), Op::Call(helper, a, b))
     }
 
     /// NOT a.

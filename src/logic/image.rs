@@ -45,6 +45,45 @@ impl fmt::Display for SlotId {
     }
 }
 
+/// An array, by its place in [`Layout::arrays`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct ArrayId(pub u32);
+
+impl ArrayId {
+    /// The place as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl fmt::Display for ArrayId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a{}", self.0)
+    }
+}
+
+/// Slots of one type, each right behind the one before, of which one can be chosen while the program runs. Two arrays
+/// may share slots.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Array {
+    /// The slot of the element 0.
+    pub first: SlotId,
+    /// How many there are, at least 1; the slots of the others follow the first in [`Layout::slots`].
+    pub count: u32,
+}
+
+impl Array {
+    /// The slots of its elements, in order.
+    pub fn slots(self) -> Range<SlotId> {
+        self.first..SlotId(self.first.0.saturating_add(self.count))
+    }
+
+    /// The same, as indices.
+    pub fn indices(self) -> Range<usize> {
+        self.first.index()..self.slots().end.index()
+    }
+}
+
 /// Which part of the image a slot belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Area {
@@ -99,6 +138,7 @@ pub struct Extent {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Layout {
     slots: Vec<Slot>,
+    arrays: Vec<Array>,
     observed: Vec<Observed>,
     inputs: Vec<Extent>,
     outputs: Vec<Range<u32>>,
@@ -117,23 +157,34 @@ impl Layout {
     /// What is wrong with them: see [`EarlierLayout::problems`].
     pub fn from_parts(
         slots: Vec<Slot>,
+        arrays: Vec<Array>,
         observed: Vec<Observed>,
         inputs: Vec<Extent>,
         outputs: Vec<Range<u32>>,
         retained: Vec<Range<u32>>,
         size: u32,
     ) -> Result<Self, Vec<String>> {
-        let layout = Self { slots, observed, inputs, outputs, retained, size };
+        let layout = Self { slots, arrays, observed, inputs, outputs, retained, size };
         let problems = layout.problems();
         if problems.is_empty() { Ok(layout) } else { Err(problems) }
     }
 
     /// What is wrong with it, which of one that a [`LayoutBuilder`] made is nothing: all that
-    /// [`EarlierLayout::problems`] names; an initial value of another type; what is observed twice or is no slot.
+    /// [`EarlierLayout::problems`] names; an initial value of another type; what is observed twice or is no slot; an
+    /// array of what are no slots of one type side by side.
     pub fn problems(&self) -> Vec<String> {
         let mut problems = EarlierLayout::from(self).problems();
         for slot in self.slots.iter().filter(|slot| slot.initial.ty() != slot.ty) {
             problems.push(format!("`{}` starts with {:?}, which is no {}", slot.name, slot.initial, slot.ty));
+        }
+        for (index, array) in self.arrays.iter().enumerate() {
+            let slots = self.slots.get(array.indices()).unwrap_or_default();
+            let behind = |pair: &[Slot]| {
+                pair[0].ty == pair[1].ty && pair[0].offset.checked_add(pair[0].ty.size()) == Some(pair[1].offset)
+            };
+            if slots.is_empty() || !slots.windows(2).all(behind) {
+                problems.push(format!("a{index} is no array: its elements are not side by side"));
+            }
         }
         let mut names = HashSet::new();
         for Observed { name, slot } in &self.observed {
@@ -155,6 +206,16 @@ impl Layout {
     /// One slot.
     pub fn slot(&self, id: SlotId) -> &Slot {
         &self.slots[id.index()]
+    }
+
+    /// The arrays, in the order in which they were asked for.
+    pub fn arrays(&self) -> &[Array] {
+        &self.arrays
+    }
+
+    /// One array.
+    pub fn array(&self, id: ArrayId) -> Array {
+        self.arrays[id.index()]
     }
 
     /// What can be watched, in declaration order: the columns of a trace.
@@ -328,6 +389,7 @@ impl From<&Layout> for EarlierLayout {
 #[derive(Debug, Default)]
 pub struct LayoutBuilder {
     slots: Vec<Slot>,
+    arrays: Vec<Array>,
     observed: Vec<Observed>,
 }
 
@@ -344,12 +406,28 @@ impl LayoutBuilder {
         id
     }
 
+    /// Makes an array of `count` slots, which were asked for one right after another and are alike in type, part and
+    /// retain.
+    ///
+    /// # Panics
+    /// When there are no such slots.
+    pub fn array(&mut self, first: SlotId, count: u32) -> ArrayId {
+        let array = Array { first, count };
+        let same = |slot: &Slot| (slot.ty, slot.area, slot.retain);
+        let slots = self.slots.get(array.indices()).unwrap_or_default();
+        assert!(!slots.is_empty() && slots.iter().all(|slot| same(slot) == same(&slots[0])), "the slots are alike");
+        let id = ArrayId(u32::try_from(self.arrays.len()).unwrap_or(u32::MAX));
+        self.arrays.push(array);
+        id
+    }
+
     /// Adds a name under which a slot can be watched and set.
     pub fn observe(&mut self, name: impl Into<String>, slot: SlotId) {
         self.observed.push(Observed { name: name.into(), slot });
     }
 
-    /// Places every slot: where the earlier layout has it, else behind.
+    /// Places every slot: where the earlier layout has it, else behind. An array that was not whole there, side by side,
+    /// goes behind with all its elements.
     ///
     /// # Errors
     /// [`ImageTooLarge`] when there is no room.
@@ -359,17 +437,23 @@ impl LayoutBuilder {
         let kept: HashMap<&str, &KeptSlot> = earlier.slots.iter().map(|slot| (slot.name.as_str(), slot)).collect();
         let mut layout = Layout {
             slots: self.slots,
+            arrays: self.arrays,
             observed: self.observed,
             inputs: earlier.inputs.clone(),
             outputs: earlier.outputs.clone(),
             retained: earlier.retained.clone(),
             size: 0,
         };
+        let place = |slot: &Slot| {
+            let same = |kept: &&&KeptSlot| (kept.ty, kept.area, kept.retain) == (slot.ty, slot.area, slot.retain);
+            kept.get(slot.name.as_str()).filter(same).map(|kept| kept.offset)
+        };
+        let mut places: Vec<Option<u32>> = layout.slots.iter().map(place).collect();
+        move_broken(&layout, &mut places);
         let mut fresh = Vec::new();
         for (index, slot) in layout.slots.iter_mut().enumerate() {
-            let same = |kept: &&&KeptSlot| (kept.ty, kept.area, kept.retain) == (slot.ty, slot.area, slot.retain);
-            match kept.get(slot.name.as_str()).filter(same) {
-                Some(kept) => slot.offset = kept.offset,
+            match places[index] {
+                Some(offset) => slot.offset = offset,
                 None => fresh.push(index),
             }
         }
@@ -390,6 +474,26 @@ impl LayoutBuilder {
         join(&mut layout.outputs, earlier.outputs.len());
         join(&mut layout.retained, earlier.retained.len());
         Ok(layout)
+    }
+}
+
+/// Takes their places from all elements of the arrays that are not whole and side by side; where arrays share slots, of
+/// all that do.
+fn move_broken(layout: &Layout, places: &mut [Option<u32>]) {
+    loop {
+        let mut moved = false;
+        for array in &layout.arrays {
+            let step = layout.slots[array.first.index()].ty.size();
+            let places = &mut places[array.indices()];
+            let whole = places.windows(2).all(|pair| pair[0].is_some() && pair[0].map(|at| at + step) == pair[1]);
+            if !whole && places.iter().any(Option::is_some) {
+                places.fill(None);
+                moved = true;
+            }
+        }
+        if !moved {
+            return;
+        }
     }
 }
 

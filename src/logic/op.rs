@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use super::SlotId;
+use super::{ArrayId, SlotId};
 use crate::elementary::Elementary;
 
 /// A value: the place of the instruction that defines it in its program.
@@ -55,16 +55,28 @@ pub enum Op {
     Select(ValueId, ValueId, ValueId),
     /// The operand, of any type, as the result's type.
     Convert(ValueId),
+    /// A pure function of one or two operands of the result's type; the second is there where it takes two.
+    Call(Helper, ValueId, Option<ValueId>),
+    /// The value of an array's element, counted from 0 by a LINT; where there is none, the type's default.
+    LoadIndexed(ArrayId, ValueId),
+    /// Sets an array's element, counted from 0 by a LINT, to a value; where there is none, nothing.
+    StoreIndexed(ArrayId, ValueId, ValueId),
 }
 
 impl Op {
+    /// Whether it has a result, which stores have not.
+    pub fn has_value(self) -> bool {
+        !matches!(self, Self::Store(..) | Self::StoreIndexed(..))
+    }
+
     /// The operands, in order.
     pub fn operands(self) -> impl Iterator<Item = ValueId> {
         let operands = match self {
             Self::Constant(_) | Self::Now | Self::Load(_) => [None, None, None],
-            Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) => [Some(a), None, None],
-            Self::Binary(_, a, b) | Self::Compare(_, a, b) => [Some(a), Some(b), None],
+            Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) | Self::LoadIndexed(_, a) => [Some(a), None, None],
+            Self::Binary(_, a, b) | Self::Compare(_, a, b) | Self::StoreIndexed(_, a, b) => [Some(a), Some(b), None],
             Self::Select(a, b, c) => [Some(a), Some(b), Some(c)],
+            Self::Call(_, a, b) => [Some(a), b, None],
         };
         operands.into_iter().flatten()
     }
@@ -80,6 +92,9 @@ impl Op {
             Self::Compare(op, a, b) => Self::Compare(op, map(a), map(b)),
             Self::Select(a, b, c) => Self::Select(map(a), map(b), map(c)),
             Self::Convert(a) => Self::Convert(map(a)),
+            Self::Call(helper, a, b) => Self::Call(helper, map(a), b.map(map)),
+            Self::LoadIndexed(array, a) => Self::LoadIndexed(array, map(a)),
+            Self::StoreIndexed(array, a, b) => Self::StoreIndexed(array, map(a), map(b)),
         }
     }
 }
@@ -216,5 +231,41 @@ operations! {
         Greater "gt" Any,
         /// Greater or equal.
         GreaterOrEqual "ge" Any,
+    }
+}
+
+operations! {
+    /// Functions too large for a few instructions: compiled code calls them, all engines the same ones. Of a REAL they
+    /// are computed in LREAL and rounded once. An LREAL is right to about a unit in the last place, the same bits
+    /// everywhere.
+    Helper {
+        /// The natural logarithm; minus infinity of zero, NaN below.
+        Ln "ln" Reals,
+        /// The logarithm to base 10; minus infinity of zero, NaN below.
+        Log10 "log" Reals,
+        /// e to the power of the operand.
+        Exp "exp" Reals,
+        /// The sine of an angle in radians; NaN of an infinity.
+        Sin "sin" Reals,
+        /// The cosine of an angle in radians; NaN of an infinity.
+        Cos "cos" Reals,
+        /// The tangent of an angle in radians; NaN of an infinity.
+        Tan "tan" Reals,
+        /// The angle from -pi/2 to pi/2 with this sine; NaN outside -1 to 1.
+        Asin "asin" Reals,
+        /// The angle from 0 to pi with this cosine; NaN outside -1 to 1.
+        Acos "acos" Reals,
+        /// The angle from -pi/2 to pi/2 with this tangent.
+        Atan "atan" Reals,
+        /// The first operand to the power of the second: 1 whenever that is 0 or the first is 1, even with a NaN; NaN
+        /// of a negative number to a power that is not whole.
+        Power "pow" Reals,
+    }
+}
+
+impl Helper {
+    /// Whether it takes a second operand.
+    pub const fn takes_two(self) -> bool {
+        matches!(self, Self::Power)
     }
 }

@@ -4,7 +4,10 @@
 
 use super::image::{Extent, Observed};
 use super::print::{UNITS, area_of};
-use super::{Binary, Compare, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Unary, ValueId, verify};
+use super::{
+    Array, ArrayId, Binary, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Unary,
+    ValueId, verify,
+};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
 use crate::source::{Source, Span};
@@ -48,6 +51,7 @@ struct Reader {
     name: Option<String>,
     size: u32,
     slots: Vec<Slot>,
+    arrays: Vec<Array>,
     inputs: Vec<Extent>,
     outputs: Vec<Range<u32>>,
     retained: Vec<Range<u32>>,
@@ -61,8 +65,15 @@ struct Reader {
 
 impl Reader {
     fn finish(mut self) -> Result<Program, Vec<String>> {
-        let layout =
-            Layout::from_parts(self.slots, self.observed, self.inputs, self.outputs, self.retained, self.size)?;
+        let layout = Layout::from_parts(
+            self.slots,
+            self.arrays,
+            self.observed,
+            self.inputs,
+            self.outputs,
+            self.retained,
+            self.size,
+        )?;
         self.origins.sort_by(|a, b| (a.0, a.1.line, &a.1.label).cmp(&(b.0, b.1.line, &b.1.label)));
         self.origins.dedup();
         let mut origins = Vec::with_capacity(self.origins.len());
@@ -106,6 +117,15 @@ impl Reader {
                 let slot = SlotId(line.number("s")?);
                 self.observed.push(Observed { name: line.quoted()?, slot });
             }
+            "array" => {
+                line.word()?;
+                if line.number("a")? as usize != self.arrays.len() {
+                    return Err(line.fault(format!("the next array is a{}", self.arrays.len())));
+                }
+                let first = SlotId(line.number("s")?);
+                line.keyword("count")?;
+                self.arrays.push(Array { first, count: line.number("")? });
+            }
             "chunk" => {
                 line.word()?;
                 self.chunk = true;
@@ -122,7 +142,7 @@ impl Reader {
                 self.origins.push(origin);
                 self.sections.push(Section { origin: index, end, starts_chunk: std::mem::take(&mut self.chunk) });
             }
-            _ if word.starts_with('s') && word != "store" => {
+            _ if word.starts_with('s') && !matches!(word, "store" | "store_indexed") => {
                 let slot = self.slot(line)?;
                 self.slots.push(slot);
             }
@@ -167,6 +187,14 @@ impl Reader {
             line.keyword(",")?;
             return Ok(Instruction { ty, op: Op::Store(slot, line.value()?) });
         }
+        if line.peek() == Some("store_indexed") {
+            line.word()?;
+            let (array, ty) = self.array_type(line)?;
+            line.keyword(",")?;
+            let index = line.value()?;
+            line.keyword(",")?;
+            return Ok(Instruction { ty, op: Op::StoreIndexed(array, index, line.value()?) });
+        }
         if line.number("v")? as usize != self.instructions.len() {
             return Err(line.fault(format!("the next value is v{}", self.instructions.len())));
         }
@@ -178,14 +206,20 @@ impl Reader {
                 let (slot, ty) = self.slot_type(line)?;
                 return Ok(Instruction { ty, op: Op::Load(slot) });
             }
+            "load_indexed" => {
+                let (array, ty) = self.array_type(line)?;
+                line.keyword(",")?;
+                return Ok(Instruction { ty, op: Op::LoadIndexed(array, line.value()?) });
+            }
             _ => {}
         }
         let (unary, binary) = (Unary::from_mnemonic(mnemonic), Binary::from_mnemonic(mnemonic));
-        let compare = Compare::from_mnemonic(mnemonic);
+        let (compare, helper) = (Compare::from_mnemonic(mnemonic), Helper::from_mnemonic(mnemonic));
         if !matches!(mnemonic, "const" | "select" | "convert")
             && unary.is_none()
             && binary.is_none()
             && compare.is_none()
+            && helper.is_none()
         {
             return Err(line.fault("the name of an operation"));
         }
@@ -206,6 +240,8 @@ impl Reader {
                 return Err(line.fault(format!("{first} to be of type {ty}")));
             }
             return Ok(Instruction { ty: Elementary::Bool, op: Op::Compare(op, first, second) });
+        } else if let Some(helper) = helper {
+            Op::Call(helper, first, if helper.takes_two() { Some(next()?) } else { None })
         } else if mnemonic == "select" {
             Op::Select(first, next()?, next()?)
         } else {
@@ -219,6 +255,15 @@ impl Reader {
         match self.slots.get(slot.index()) {
             Some(found) => Ok((slot, found.ty)),
             None => Err(line.fault("a slot of the image")),
+        }
+    }
+
+    fn array_type(&self, line: &mut Line<'_>) -> Result<(ArrayId, Elementary), Diagnostic> {
+        let array = ArrayId(line.number("a")?);
+        let first = self.arrays.get(array.index()).and_then(|array| self.slots.get(array.first.index()));
+        match first {
+            Some(found) => Ok((array, found.ty)),
+            None => Err(line.fault("an array of the image")),
         }
     }
 }
@@ -484,6 +529,9 @@ section 1 line 15 "r20"
             ("store s1", "store s9", "this cannot be read; expected: a slot of the image"),
             ("v0, v3", "v0, v9", "v4: v9 is used before it is defined"),
             ("s1 BOOL at 1", "s1 BOOL at 0", "`lamp` at 0 is not an input, unlike the run that it lies in"),
+            ("store s1, v4", "store_indexed a0, v1, v4", "this cannot be read; expected: an array of the image"),
+            ("  inputs", "  array a1 s0 count 2\n  inputs", "this cannot be read; expected: the next array is a0"),
+            ("  inputs", "  array a0 s1 count 2\n  inputs", "a0 is no array: its elements are not side by side"),
             ("section 1", "section 2", "the origin 2 is missing or there twice"),
             ("image 8", "image 99999999999", "this cannot be read; expected: a number"),
             ("program", "programm", "this cannot be read; expected: v and a number"),

@@ -4,6 +4,7 @@
 //! program "pump"
 //! image 8
 //!   s0 BOOL at 0 input line 3 = FALSE "start"
+//!   array a0 s0 count 1
 //!   inputs 0..1 bools 0..1
 //!   observe s0 "start"
 //! chunk
@@ -17,7 +18,7 @@
 use std::fmt::{self, Write};
 
 use super::image::Observed;
-use super::{Area, Op, Origin, Program, Slot, SlotId, ValueId};
+use super::{Area, Array, Op, Origin, Program, Slot, SlotId, ValueId};
 use crate::elementary::{Elementary, Value, f32_of};
 
 /// The text of a program.
@@ -67,6 +68,9 @@ fn image(text: &mut String, program: &Program) -> fmt::Result {
         write!(text, "  s{index} {ty} at {offset} {}{retain} line {line} = ", area_name(*area))?;
         writeln!(text, "{} {}", Literal(*initial), Quoted(name))?;
     }
+    for (index, Array { first, count }) in layout.arrays().iter().enumerate() {
+        writeln!(text, "  array a{index} {first} count {count}")?;
+    }
     for extent in layout.inputs() {
         writeln!(text, "  inputs {:?} bools {:?}", extent.bytes, extent.bools)?;
     }
@@ -90,18 +94,22 @@ fn instruction(text: &mut String, program: &Program, place: usize) -> fmt::Resul
         |value: ValueId| program.instructions.get(value.index()).map_or(Elementary::Bool, |instruction| instruction.ty);
     match instruction.op {
         Op::Store(slot, a) => writeln!(text, "  store {slot}, {a} ; {}", Escaped(comment(slot))),
+        Op::StoreIndexed(array, index, a) => writeln!(text, "  store_indexed {array}, {index}, {a}"),
         op => {
             write!(text, "  v{place} = ")?;
             match op {
                 Op::Constant(bits) => writeln!(text, "const {ty} {}", Literal(Value::from_bits(ty, bits))),
                 Op::Now => writeln!(text, "now"),
                 Op::Load(slot) => writeln!(text, "load {slot} ; {}", Escaped(comment(slot))),
-                Op::Store(..) => Ok(()),
+                Op::LoadIndexed(array, index) => writeln!(text, "load_indexed {array}, {index}"),
+                Op::Store(..) | Op::StoreIndexed(..) => Ok(()),
                 Op::Unary(op, a) => writeln!(text, "{} {ty} {a}", op.mnemonic()),
                 Op::Binary(op, a, b) => writeln!(text, "{} {ty} {a}, {b}", op.mnemonic()),
                 Op::Compare(op, a, b) => writeln!(text, "{} {} {a}, {b}", op.mnemonic(), ty_of(a)),
                 Op::Select(condition, a, b) => writeln!(text, "select {ty} {condition}, {a}, {b}"),
                 Op::Convert(a) => writeln!(text, "convert {ty} {a} ; from {}", ty_of(a)),
+                Op::Call(helper, a, None) => writeln!(text, "{} {ty} {a}", helper.mnemonic()),
+                Op::Call(helper, a, Some(b)) => writeln!(text, "{} {ty} {a}, {b}", helper.mnemonic()),
             }
         }
     }

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::image::LayoutBuilder;
-use super::{Area, Binary, Builder, Compare, Layout, Origin, Program, Slot, SlotId, Unary, ValueId};
+use super::{Area, ArrayId, Binary, Builder, Compare, Helper, Layout, Origin, Program, Slot, SlotId, Unary, ValueId};
 use crate::elementary::{Elementary, Value};
 
 /// A program of up to a few hundred instructions over up to forty slots.
@@ -54,7 +54,8 @@ pub fn now(seed: u64) -> i64 {
 
 fn layout(rng: &mut Pcg64) -> Layout {
     let mut layout = LayoutBuilder::new();
-    for index in 0..rng.random_range(4..40) {
+    let count = rng.random_range(4..40);
+    for index in 0..count {
         let ty = if rng.random_bool(0.5) { Elementary::Bool } else { pick(rng, &Elementary::ALL) };
         let area = pick(rng, &[Area::Input, Area::Output, Area::Memory, Area::State]);
         let slot = layout.slot(Slot {
@@ -70,7 +71,19 @@ fn layout(rng: &mut Pcg64) -> Layout {
             layout.observe(format!("x{index}"), slot);
         }
     }
-    layout.finish(None).unwrap_or_else(|_| unreachable!("forty slots fit"))
+    for index in 0..rng.random_range(1..4) {
+        let ty = if rng.random_bool(0.3) { Elementary::Bool } else { pick(rng, &Elementary::ALL) };
+        let (area, retain) = (pick(rng, &[Area::Output, Area::Memory]), rng.random_bool(0.3));
+        let elements = rng.random_range(1..6_u32);
+        let slots: Vec<SlotId> = (0..elements)
+            .map(|element| {
+                let (name, initial) = (format!("array{index}[{element}]"), value(rng, ty));
+                layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line: count + index })
+            })
+            .collect();
+        layout.array(slots[0], elements);
+    }
+    layout.finish(None).unwrap_or_else(|_| unreachable!("so few slots fit"))
 }
 
 fn pick<T: Copy>(rng: &mut Pcg64, from: &[T]) -> T {
@@ -102,7 +115,7 @@ struct Generator {
 impl Generator {
     fn instruction(&mut self, boolean: bool) {
         let ty = if boolean { Elementary::Bool } else { pick(&mut self.rng, &Elementary::ALL) };
-        let made = match self.rng.random_range(0..10) {
+        let made = match self.rng.random_range(0..11) {
             0 => {
                 if let Some(slot) = self.slot(ty) {
                     let value = self.operand(ty);
@@ -110,10 +123,28 @@ impl Generator {
                 }
                 return;
             }
+            10 => {
+                let arrays: Vec<u32> = (0..).zip(self.builder.layout().arrays()).map(|(index, _)| index).collect();
+                let (array, index) = (ArrayId(pick(&mut self.rng, &arrays)), self.index());
+                if self.rng.random_bool(0.5) {
+                    self.builder.load_indexed(array, index)
+                } else {
+                    let layout = self.builder.layout();
+                    let of = layout.slot(layout.array(array).first).ty;
+                    let value = self.operand(of);
+                    self.builder.store_indexed(array, index, value);
+                    return;
+                }
+            }
             1 => match self.slot(ty) {
                 Some(slot) => self.builder.load(slot),
                 None => self.builder.now(),
             },
+            2 if ty.is_real() && self.rng.random_bool(0.7) => {
+                let (helper, a) = (pick(&mut self.rng, Helper::ALL), self.operand(ty));
+                let b = helper.takes_two().then(|| self.operand(ty));
+                self.builder.call(helper, a, b)
+            }
             2 => {
                 let (op, a) = (pick(&mut self.rng, Unary::ALL), self.operand(ty));
                 if !op.domain().contains(ty) {
@@ -163,6 +194,20 @@ impl Generator {
         made
     }
 
+    /// A LINT that names an element of a small array about half of the time.
+    fn index(&mut self) -> ValueId {
+        if self.rng.random_bool(0.6) {
+            let any = self.operand(Elementary::Usint);
+            let index = self.builder.convert(any, Elementary::Lint);
+            let few = self.builder.constant(Value::from_bits(Elementary::Lint, 7));
+            let index = self.builder.binary(Binary::Remainder, index, few);
+            self.live.extend([index, few]);
+            index
+        } else {
+            self.operand(Elementary::Lint)
+        }
+    }
+
     fn slot(&mut self, ty: Elementary) -> Option<SlotId> {
         let slots = self.builder.layout().slots();
         let matching: Vec<u32> =
@@ -195,7 +240,10 @@ mod tests {
                     Op::Compare(op, a, _) => (op.mnemonic(), ty_of(a)),
                     Op::Select(_, a, _) => ("select", ty_of(a)),
                     Op::Convert(a) => ("convert", ty_of(a)),
+                    Op::Call(helper, a, _) => (helper.mnemonic(), ty_of(a)),
                     Op::Load(_) => ("load", instruction.ty),
+                    Op::LoadIndexed(..) => ("load_indexed", instruction.ty),
+                    Op::StoreIndexed(..) => ("store_indexed", instruction.ty),
                     Op::Store(..) => ("store", instruction.ty),
                     Op::Constant(_) => ("constant", instruction.ty),
                     Op::Now => ("now", instruction.ty),
@@ -206,6 +254,8 @@ mod tests {
         expected.extend(Unary::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Binary::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Compare::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
+        expected.extend(Helper::ALL.iter().map(|helper| (helper.mnemonic(), helper.domain())));
+        expected.extend(["load_indexed", "store_indexed"].map(|name| (name, Domain::Any)));
         expected.extend(["select", "convert", "load", "store", "constant"].map(|name| (name, Domain::Any)));
         for (name, domain) in expected {
             for ty in Elementary::ALL.into_iter().filter(|ty| domain.contains(*ty)) {

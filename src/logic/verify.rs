@@ -7,15 +7,15 @@
 //!   (see [`Layout::problems`](super::Layout::problems));
 //! - sections are in order and together cover all instructions, their origins exist, and the first starts a chunk;
 //! - every operand is defined before, in the same chunk, and not by a store, which has no value;
-//! - every slot that is loaded or stored exists and has the instruction's type, and a stored value has it too;
-//! - constants are in register form;
+//! - every slot or array that is loaded or stored exists and has the instruction's type, and a stored value has it too;
+//! - an index is a LINT, and constants are in register form;
 //! - the types of operands and results are those of the op table, and of [`Op`]'s description.
 //!
 //! It must never panic, whatever the program.
 
 use std::fmt;
 
-use super::{Instruction, Op, Program, SlotId, ValueId};
+use super::{ArrayId, Instruction, Op, Program, SlotId, ValueId};
 use crate::elementary::{Elementary, canonical};
 
 /// What is wrong with a program.
@@ -87,7 +87,7 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
             return Err(format!("{value} is of an earlier chunk"));
         }
         match program.instructions[value.index()] {
-            Instruction { op: Op::Store(..), .. } => Err(format!("{value} is a store, which has no value")),
+            Instruction { op, .. } if !op.has_value() => Err(format!("{value} is a store, which has no value")),
             Instruction { ty, .. } => Ok(ty),
         }
     };
@@ -96,6 +96,10 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
     let slot = |slot: SlotId| match program.layout.slots().get(slot.index()) {
         Some(found) => same(format_args!("{slot}"), found.ty, ty),
         None => Err(format!("{slot} does not exist")),
+    };
+    let array = |array: ArrayId| match program.layout.arrays().get(array.index()) {
+        Some(found) => slot(found.first),
+        None => Err(format!("{array} does not exist")),
     };
     let takes = |mnemonic: &str, domain: super::Domain| {
         if domain.contains(ty) { Ok(()) } else { Err(format!("{mnemonic} does not take {ty}")) }
@@ -106,6 +110,8 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Now => result(Elementary::Time),
         Op::Load(from) => slot(from),
         Op::Store(to, a) => slot(to).and(expect(a, ty)),
+        Op::LoadIndexed(from, index) => array(from).and(expect(index, Elementary::Lint)),
+        Op::StoreIndexed(to, index, a) => array(to).and(expect(index, Elementary::Lint)).and(expect(a, ty)),
         Op::Unary(op, a) => takes(op.mnemonic(), op.domain()).and(expect(a, ty)),
         Op::Binary(op, a, b) => {
             let second = if op.takes_amount() { Elementary::Udint } else { ty };
@@ -114,6 +120,13 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Compare(_, a, b) => result(Elementary::Bool).and(expect(b, operand(a)?)),
         Op::Select(condition, a, b) => expect(condition, Elementary::Bool).and(expect(a, ty)).and(expect(b, ty)),
         Op::Convert(a) => operand(a).map(|_| ()),
+        Op::Call(helper, _, b) if b.is_some() != helper.takes_two() => {
+            let count = if helper.takes_two() { "two operands" } else { "one operand" };
+            Err(format!("{} takes {count}", helper.mnemonic()))
+        }
+        Op::Call(helper, a, b) => {
+            takes(helper.mnemonic(), helper.domain()).and(expect(a, ty)).and(b.map_or(Ok(()), |b| expect(b, ty)))
+        }
     }
 }
 
@@ -122,7 +135,7 @@ mod tests {
     use super::*;
     use crate::elementary::Value;
     use crate::logic::image::LayoutBuilder;
-    use crate::logic::{Area, Binary, Builder, Compare, Origin, Slot, random};
+    use crate::logic::{Area, Binary, Builder, Compare, Helper, Origin, Slot, random};
 
     /// v0 = load s0, v1 = load s1, v2 = and v0 v0, v3 = store s0 v2 | v4 = lt v1 v1 in two sections.
     fn program() -> Program {
@@ -173,6 +186,11 @@ mod tests {
             (4, int, Op::Load(SlotId(2)), "v4: s2 does not exist"),
             (4, int, Op::Store(SlotId(1), v(0)), "v4: v0 is BOOL, but INT belongs here"),
             (4, int, Op::Constant(0xFFFF), "v4: 0xffff is no INT in register form"),
+            (4, int, Op::Call(Helper::Sin, v(1), None), "v4: sin does not take INT"),
+            (4, Elementary::Real, Op::Call(Helper::Sin, v(1), None), "v4: v1 is INT, but REAL belongs here"),
+            (4, Elementary::Real, Op::Call(Helper::Sin, v(1), Some(v(1))), "v4: sin takes one operand"),
+            (4, Elementary::Real, Op::Call(Helper::Power, v(1), None), "v4: pow takes two operands"),
+            (4, int, Op::LoadIndexed(ArrayId(0), v(1)), "v4: a0 does not exist"),
             (4, int, Op::Now, "v4: the result is INT, but TIME belongs here"),
         ];
         for (place, ty, op, expected) in cases {

@@ -3,7 +3,7 @@
 //! Only near: a value that was stored within the last [`WINDOW`] sections, or loaded in this one. Farther, values
 //! that wait in registers would push each other out to the stack, which costs more than loading again.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::rewrite::rewrite;
 use crate::logic::{Op, Program, SlotId, ValueId};
@@ -18,8 +18,9 @@ pub(super) fn forward(program: Program) -> Program {
         value: ValueId,
         until: usize,
     }
-    let mut known: HashMap<SlotId, Known> = HashMap::new();
+    let mut known: BTreeMap<SlotId, Known> = BTreeMap::new();
     let mut chunk = None;
+    let arrays = program.layout.arrays().to_vec();
     rewrite(program, |output, place, instruction| {
         if chunk.replace(place.chunk) != Some(place.chunk) {
             known.clear();
@@ -38,13 +39,24 @@ pub(super) fn forward(program: Program) -> Program {
                 output.emit(instruction.ty, instruction.op);
                 None
             }
+            Op::StoreIndexed(array, ..) => {
+                // Any of its elements may be another now.
+                let slots: Vec<SlotId> = known.range(arrays[array.index()].slots()).map(|(slot, _)| *slot).collect();
+                slots.iter().for_each(|slot| {
+                    known.remove(slot);
+                });
+                output.emit(instruction.ty, instruction.op);
+                None
+            }
             Op::Constant(_)
             | Op::Now
             | Op::Unary(..)
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => Some(output.emit(instruction.ty, instruction.op)),
+            | Op::Convert(_)
+            | Op::Call(..)
+            | Op::LoadIndexed(..) => Some(output.emit(instruction.ty, instruction.op)),
         }
     })
 }

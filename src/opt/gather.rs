@@ -49,7 +49,7 @@ pub(super) fn gather(program: Program) -> Program {
             }
             (_, op) => {
                 let value = output.emit(instruction.ty, op);
-                (!matches!(op, Op::Store(..))).then_some(value)
+                op.has_value().then_some(value)
             }
         };
         copies[place.index] = copy;

@@ -10,7 +10,7 @@ pub(super) fn simplify(program: Program) -> Program {
         let simpler = folded(output, instruction).or_else(|| simplified(output, instruction));
         match (simpler, instruction.op) {
             (Some(value), _) => Some(value),
-            (None, Op::Store(..)) => {
+            (None, op) if !op.has_value() => {
                 output.emit(instruction.ty, instruction.op);
                 None
             }
@@ -23,19 +23,24 @@ pub(super) fn simplify(program: Program) -> Program {
 fn folded(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     let constant = |value| output.constant_of(value);
     let bits = match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) => return None,
+        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
+            return None;
+        }
         Op::Unary(op, a) => evaluate::unary(op, ty, constant(a)?),
         Op::Binary(op, a, b) => evaluate::binary(op, ty, constant(a)?, constant(b)?),
         Op::Compare(op, a, b) => u64::from(evaluate::compare(op, output.ty(a), constant(a)?, constant(b)?)),
         Op::Select(condition, a, b) => return Some(if constant(condition)? != 0 { a } else { b }),
         Op::Convert(a) => evaluate::convert(output.ty(a), ty, constant(a)?),
+        Op::Call(helper, a, None) => evaluate::call(helper, ty, constant(a)?, None),
+        Op::Call(helper, a, Some(b)) => evaluate::call(helper, ty, constant(a)?, Some(constant(b)?)),
     };
     Some(output.constant(ty, bits))
 }
 
 fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) => None,
+        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) | Op::Call(..) => None,
+        Op::LoadIndexed(..) | Op::StoreIndexed(..) => None,
         Op::Unary(op, a) => unary(output, op, a),
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),

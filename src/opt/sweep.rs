@@ -18,6 +18,11 @@ pub(super) fn sweep(program: Program) -> Program {
                 Op::Load(slot) if needed[index] => {
                     overwritten.remove(&slot);
                 }
+                Op::StoreIndexed(..) => needed[index] = true,
+                Op::LoadIndexed(array, _) if needed[index] => {
+                    let read = program.layout.array(array).slots();
+                    overwritten.retain(|slot| !read.contains(slot));
+                }
                 Op::Constant(_)
                 | Op::Now
                 | Op::Load(_)
@@ -25,7 +30,9 @@ pub(super) fn sweep(program: Program) -> Program {
                 | Op::Binary(..)
                 | Op::Compare(..)
                 | Op::Select(..)
-                | Op::Convert(_) => {}
+                | Op::Convert(_)
+                | Op::Call(..)
+                | Op::LoadIndexed(..) => {}
             }
             if needed[index] {
                 program.instructions[index].op.operands().for_each(|operand| needed[operand.index()] = true);

@@ -41,11 +41,17 @@ fn print(program: &Program) -> String {
             Op::Now => format!("v{index} = now"),
             Op::Load(slot) => format!("v{index} = {}", name(slot)),
             Op::Store(slot, a) => format!("{} := {a}", name(slot)),
+            Op::LoadIndexed(array, place) => format!("v{index} = {array}[{place}]"),
+            Op::StoreIndexed(array, place, a) => format!("{array}[{place}] := {a}"),
             Op::Unary(op, a) => format!("v{index} = {} {a}", op.mnemonic()),
             Op::Binary(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
             Op::Compare(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
             Op::Select(c, a, b) => format!("v{index} = select {c} {a} {b}"),
             Op::Convert(a) => format!("v{index} = {}({a})", instruction.ty),
+            Op::Call(helper, ..) => {
+                let operands: Vec<String> = instruction.op.operands().map(|operand| operand.to_string()).collect();
+                format!("v{index} = {} {}", helper.mnemonic(), operands.join(" "))
+            }
         });
     }
     out.join("; ")
@@ -239,4 +245,29 @@ fn a_tree_of_a_hundred_thousand_contacts_is_gathered() {
         logic.store(s[2], power);
     }]);
     assert!(optimise(program).instructions.len() < 400_000);
+}
+
+#[test]
+fn an_indexed_store_may_change_every_element_and_an_indexed_load_sees_all() {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str, ty| {
+        let (name, initial) = (name.to_owned(), Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+    };
+    let (first, second) = (slot("x", Elementary::Int), slot("y", Elementary::Int));
+    let (other, index) = (slot("z", Elementary::Int), slot("i", Elementary::Lint));
+    let array = layout.array(first, 2);
+    let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
+    let (at, value) = (logic.load(index), logic.load(other));
+    logic.store(second, value);
+    logic.store_indexed(array, at, value);
+    let again = logic.load(second);
+    logic.store(first, again);
+    let element = logic.load_indexed(array, at);
+    logic.store(first, value);
+    logic.store(other, element);
+    logic.end_section(Origin { label: "r".into(), line: 1 });
+    let text = print(&pass("sweep", pass("forward", logic.finish())));
+    let expected = "v0 = i; v1 = z; y := v1; a0[v0] := v1; v4 = y; x := v4; v6 = a0[v0]; x := v1; z := v6";
+    assert_eq!(text, expected);
 }

@@ -3,18 +3,18 @@
 //! A load is made where its value is used, so that it becomes part of the instruction that uses it, and at the
 //! latest before its slot is stored. All else is made in order.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, SigRef, Type, Value, types};
 use cranelift_codegen::isa::TargetIsa;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
 use super::place::{self, Stored};
 use super::{BASES, Target, location_of};
 use crate::elementary::Elementary;
-use crate::logic::{Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
+use crate::logic::{Array, Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
 
 /// What was learnt of a chunk on the way.
 pub(super) struct Built {
@@ -45,7 +45,7 @@ pub(super) fn chunk(
     for operand in program.instructions[first..end].iter().flat_map(|instruction| instruction.op.operands()) {
         uses[operand.index() - first] += 1;
     }
-    let params = builder.block_params(block);
+    let params = builder.block_params(block).to_vec();
     let now = params[1];
     let mut pointers = [(0, params[0]); BASES];
     for (index, pointer) in pointers.iter_mut().enumerate() {
@@ -58,11 +58,13 @@ pub(super) fn chunk(
         builder,
         now,
         pointers,
+        helpers: params.get(BASES + 1).copied(),
+        helper_signature: None,
         held: vec![None; end - first],
         uses,
         alive: 0,
         most_alive: 0,
-        pending: HashMap::new(),
+        pending: BTreeMap::new(),
         stored: Stored::before(program, sections.start),
         section: sections.start,
     };
@@ -79,7 +81,7 @@ pub(super) fn chunk(
 }
 
 pub(super) struct Lowering<'a, 'f> {
-    program: &'a Program,
+    pub(super) program: &'a Program,
     /// The chunk's first instruction.
     first: usize,
     pub(super) target: Target,
@@ -87,6 +89,10 @@ pub(super) struct Lowering<'a, 'f> {
     now: Value,
     /// Offsets and values of the pointers.
     pointers: [(u32, Value); BASES],
+    /// The table of helpers, where the chunk calls any.
+    pub(super) helpers: Option<Value>,
+    /// What helpers take and give, once one is called.
+    pub(super) helper_signature: Option<SigRef>,
     /// By instruction of the chunk: what holds its value, once made.
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
@@ -95,7 +101,7 @@ pub(super) struct Lowering<'a, 'f> {
     alive: usize,
     most_alive: usize,
     /// Loads of a slot since it was last stored.
-    pending: HashMap<SlotId, Vec<ValueId>>,
+    pending: BTreeMap<SlotId, Vec<ValueId>>,
     stored: Stored,
     section: usize,
 }
@@ -103,7 +109,7 @@ pub(super) struct Lowering<'a, 'f> {
 impl Lowering<'_, '_> {
     fn instruction(&mut self, index: usize, Instruction { ty, op }: Instruction) {
         let id = ValueId(u32::try_from(index).unwrap_or(u32::MAX));
-        if self.uses[index - self.first] == 0 && !matches!(op, Op::Store(..)) {
+        if self.uses[index - self.first] == 0 && op.has_value() {
             return;
         }
         let value = match op {
@@ -128,6 +134,9 @@ impl Lowering<'_, '_> {
                 self.choose(condition, a, b)
             }
             Op::Convert(a) => self.convert(a, ty),
+            Op::Call(helper, a, b) => self.call(helper, ty, a, b),
+            Op::LoadIndexed(array, index) => self.load_indexed(array, index),
+            Op::StoreIndexed(array, index, a) => return self.store_indexed(array, index, a),
         };
         let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
         let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
@@ -168,7 +177,10 @@ impl Lowering<'_, '_> {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => None,
+            | Op::Convert(_)
+            | Op::Call(..)
+            | Op::LoadIndexed(..)
+            | Op::StoreIndexed(..) => None,
         }
     }
 
@@ -213,7 +225,10 @@ impl Lowering<'_, '_> {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => unreachable!("operands come before, are no stores, and only the above are late"),
+            | Op::Convert(_)
+            | Op::Call(..)
+            | Op::LoadIndexed(..)
+            | Op::StoreIndexed(..) => unreachable!("operands come before, are no stores, and only the above are late"),
         }
     }
 
@@ -225,7 +240,7 @@ impl Lowering<'_, '_> {
     }
 
     /// The pointer nearest below or around an offset, and the way from there.
-    fn address(&self, offset: u32) -> (Value, i32) {
+    pub(super) fn address(&self, offset: u32) -> (Value, i32) {
         let mut best = (self.pointers[0].1, i64::MAX);
         for (base, pointer) in self.pointers {
             let way = i64::from(offset) - i64::from(base);
@@ -257,17 +272,21 @@ impl Lowering<'_, '_> {
     fn exact_load(&mut self, id: SlotId) -> (Value, bool) {
         let slot = self.program.layout.slot(id);
         let (pointer, way) = self.address(slot.offset);
-        let (flags, signed) = (MemFlagsData::trusted(), slot.ty.is_signed());
+        (self.read(slot.ty, pointer, way), false)
+    }
+
+    /// Reads a value of a type from memory, and no more than that.
+    pub(super) fn read(&mut self, ty: Elementary, pointer: Value, way: i32) -> Value {
+        let (flags, signed) = (MemFlagsData::trusted(), ty.is_signed());
         let ins = self.builder.ins();
-        let value = match slot.ty.size() {
+        match ty.size() {
             1 if signed => ins.sload8(types::I32, flags, pointer, way),
             1 => ins.uload8(types::I32, flags, pointer, way),
             2 if signed => ins.sload16(types::I32, flags, pointer, way),
             2 => ins.uload16(types::I32, flags, pointer, way),
             4 => ins.load(types::I32, flags, pointer, way),
             _ => ins.load(types::I64, flags, pointer, way),
-        };
-        (value, false)
+        }
     }
 
     fn store(&mut self, id: SlotId, value: ValueId) {
@@ -277,6 +296,14 @@ impl Lowering<'_, '_> {
             Some(bits) => self.integer_constant(memory(slot.ty), bits),
             None => self.value(value),
         };
+        self.make_pending(id);
+        let (pointer, way) = self.address(slot.offset);
+        self.write(slot.ty, value, pointer, way);
+        self.stored.store(slot.offset, slot.ty.size(), self.section);
+    }
+
+    /// Makes the loads of a slot that is about to be stored.
+    fn make_pending(&mut self, id: SlotId) {
         for load in self.pending.remove(&id).unwrap_or_default() {
             let place = load.index() - self.first;
             if self.uses[place] > 0 && self.held[place].is_none() {
@@ -284,16 +311,26 @@ impl Lowering<'_, '_> {
                 self.hold(place, value);
             }
         }
-        let (pointer, way) = self.address(slot.offset);
+    }
+
+    /// The same for all elements of an array.
+    pub(super) fn make_all_pending(&mut self, array: Array) {
+        let slots: Vec<SlotId> = self.pending.range(array.slots()).map(|(slot, _)| *slot).collect();
+        for slot in slots {
+            self.make_pending(slot);
+        }
+    }
+
+    /// Writes a value of a type to memory.
+    pub(super) fn write(&mut self, ty: Elementary, value: Value, pointer: Value, way: i32) {
         let flags = MemFlagsData::trusted();
         let width = self.builder.func.dfg.value_type(value).bytes();
         let ins = self.builder.ins();
-        match slot.ty.size() {
+        match ty.size() {
             size if size == width => ins.store(flags, value, pointer, way),
             1 => ins.istore8(flags, value, pointer, way),
             _ => ins.istore16(flags, value, pointer, way),
         };
-        self.stored.store(slot.offset, slot.ty.size(), self.section);
     }
 
     /// Two values of one type, held alike: of two BOOLs, both in 32 bits if they are, else both in 8.
@@ -302,7 +339,7 @@ impl Lowering<'_, '_> {
         self.narrowed(a, b)
     }
 
-    fn narrowed(&mut self, a: Value, b: Value) -> (Value, Value) {
+    pub(super) fn narrowed(&mut self, a: Value, b: Value) -> (Value, Value) {
         if self.builder.func.dfg.value_type(a) == self.builder.func.dfg.value_type(b) {
             (a, b)
         } else {

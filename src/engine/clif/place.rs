@@ -40,7 +40,7 @@ fn densest(offsets: &[u32], span: u32) -> Option<Range<usize>> {
     best
 }
 
-/// Every load and store of some sections: whether it stores, and what.
+/// Every load and store of some sections: whether it stores, and what; of an array, its first element.
 fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (bool, SlotId)> {
     let instructions = if sections.is_empty() {
         0..0
@@ -50,13 +50,16 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
     program.instructions[instructions].iter().filter_map(|instruction| match instruction.op {
         Op::Load(slot) => Some((false, slot)),
         Op::Store(slot, _) => Some((true, slot)),
+        // Which element is not known; it counts as one that is not stored, so that wide loads beside it stay.
+        Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => Some((false, program.layout.array(array).first)),
         Op::Constant(_)
         | Op::Now
         | Op::Unary(..)
         | Op::Binary(..)
         | Op::Compare(..)
         | Op::Select(..)
-        | Op::Convert(_) => None,
+        | Op::Convert(_)
+        | Op::Call(..) => None,
     })
 }
 

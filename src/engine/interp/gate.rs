@@ -19,25 +19,23 @@ const COLUMNS: [Table; INPUTS] = [0xAAAA, 0xCCCC, 0xF0F0, 0xFF00];
 pub(super) struct Gate {
     inputs: [u32; INPUTS],
     target: u32,
-    /// The table, twice: a constant's gate reads its own target, which may hold anything before, and whichever bit that
-    /// chooses is the constant.
-    table: u32,
+    table: Table,
 }
 
 impl Gate {
-    pub(super) fn new(function: &Function, target: u32) -> Self {
-        // Where there are inputs, those that do not count must be BOOLs all the same; best one that is at hand.
-        let mut inputs = [function.inputs().first().copied().unwrap_or(target); INPUTS];
+    /// A gate that sets `target`; `any` is some cell that always holds a BOOL, which that of the target need not before.
+    pub(super) fn new(function: &Function, target: u32, any: u32) -> Self {
+        // An input that does not count must be a BOOL all the same; best one that is at hand.
+        let mut inputs = [function.inputs().first().copied().unwrap_or(any); INPUTS];
         inputs[..function.count].copy_from_slice(function.inputs());
-        let table = u32::from(function.table);
-        Self { inputs, target, table: table << Table::BITS | table }
+        Self { inputs, target, table: function.table }
     }
 
     #[inline(always)]
     pub(super) fn execute(&self, cells: &mut [u8]) {
         let input = |place: usize| u32::from(cells[self.inputs[place] as usize]) << place;
         let index = input(0) + input(1) + input(2) + input(3);
-        cells[self.target as usize] = u8::from(self.table.wrapping_shr(index) & 1 != 0);
+        cells[self.target as usize] = u8::from(u32::from(self.table).wrapping_shr(index) & 1 != 0);
     }
 }
 

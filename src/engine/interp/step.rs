@@ -4,7 +4,7 @@
 
 use crate::elementary::{Elementary, Value};
 use crate::logic::image::{read, write};
-use crate::logic::{Binary, Compare, Instruction, Op, Unary, evaluate};
+use crate::logic::{Binary, Compare, Helper, Instruction, Op, Unary, evaluate};
 
 /// Sets a cell to what an operation makes of others, after some gates.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,11 @@ pub(super) enum Kind {
     Binary(Binary, Elementary),
     Compare(Compare, Elementary),
     Convert(Elementary, Elementary),
+    Call(Helper, Elementary),
+    /// The operands are the index, the first element and how many there are.
+    LoadIndexed(Elementary),
+    /// The operands are the index, the value and how many elements there are; the target is the first of them.
+    StoreIndexed(Elementary),
 }
 
 impl Kind {
@@ -48,7 +53,9 @@ impl Kind {
     pub(super) fn of(instruction: Instruction, of: Elementary) -> Option<(Self, bool)> {
         let wide = matches!(of, Elementary::Lint | Elementary::Time);
         let kind = match instruction.op {
-            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) => return None,
+            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
+                return None;
+            }
             Op::Select(..) => match instruction.ty.size() {
                 1 => Self::Select8,
                 2 => Self::Select16,
@@ -71,6 +78,7 @@ impl Kind {
             Op::Binary(op, ..) => Self::Binary(op, of),
             Op::Compare(op, ..) => Self::Compare(op, of),
             Op::Convert(_) => Self::Convert(of, instruction.ty),
+            Op::Call(helper, ..) => Self::Call(helper, of),
         };
         Some((kind, false))
     }
@@ -107,7 +115,10 @@ impl Step {
             Kind::LessOrEqual64 => self.put(cells, [u8::from(signed(cells, a) <= signed(cells, b))]),
             Kind::Equal64 => self.put(cells, [u8::from(signed(cells, a) == signed(cells, b))]),
             Kind::NotEqual64 => self.put(cells, [u8::from(signed(cells, a) != signed(cells, b))]),
-            Kind::Unary(..) | Kind::Binary(..) | Kind::Compare(..) | Kind::Convert(..) => self.evaluate(cells),
+            Kind::Unary(..) | Kind::Binary(..) | Kind::Compare(..) | Kind::Convert(..) | Kind::Call(..) => {
+                self.evaluate(cells);
+            }
+            Kind::LoadIndexed(..) | Kind::StoreIndexed(..) => self.access(cells),
         }
     }
 
@@ -126,9 +137,32 @@ impl Step {
                 (Elementary::Bool, u64::from(holds))
             }
             Kind::Convert(from, to) => (to, evaluate::convert(from, to, read(cells, a, from).bits())),
+            Kind::Call(helper, ty) => {
+                let second = helper.takes_two().then(|| read(cells, b, ty).bits());
+                (ty, evaluate::call(helper, ty, read(cells, a, ty).bits(), second))
+            }
             _ => return,
         };
         write(cells, self.target, Value::from_bits(ty, bits));
+    }
+
+    /// Loads or stores an element of an array.
+    #[inline(never)]
+    fn access(&self, cells: &mut [u8]) {
+        let [index, b, count] = self.operands;
+        let element = evaluate::element(count, signed(cells, index).cast_unsigned());
+        match self.kind {
+            Kind::LoadIndexed(ty) => {
+                let value = element.map_or(Value::default_of(ty), |element| read(cells, b + element * ty.size(), ty));
+                write(cells, self.target, value);
+            }
+            Kind::StoreIndexed(ty) => {
+                if let Some(element) = element {
+                    write(cells, self.target + element * ty.size(), read(cells, b, ty));
+                }
+            }
+            _ => {}
+        }
     }
 
     fn put<const N: usize>(&self, cells: &mut [u8], bytes: [u8; N]) {

@@ -146,3 +146,20 @@ fn bytes_that_are_no_slot_stay_as_they_are() {
     Interpreter::new(&program).scan(&mut image, 0);
     assert_eq!(image, expected);
 }
+
+#[test]
+fn a_constant_is_itself_whatever_lay_in_its_cell_before() {
+    let mut program = program(&[Elementary::Bool, Elementary::Lint, Elementary::Lint], |builder, slots| {
+        // Leaves bytes that are no BOOLs where the next chunk computes.
+        let number = builder.load(slots[1]);
+        let sum = builder.binary(Binary::Add, number, number);
+        let twice = builder.binary(Binary::Add, sum, sum);
+        builder.store(slots[1], twice);
+        builder.end_section(Origin { label: "first".to_owned(), line: 1 });
+        let truth = builder.bool(true);
+        let one = builder.convert(truth, Elementary::Lint);
+        builder.store(slots[2], one);
+    });
+    program.sections[1].starts_chunk = true;
+    gates_and_steps(&program);
+}

@@ -7,7 +7,7 @@ use rung_runtime::Scan;
 
 use crate::elementary::{Elementary, Value};
 use crate::logic::image::{read, write};
-use crate::logic::{Instruction, Op, Program, ValueId, evaluate, verify};
+use crate::logic::{Array, Instruction, Op, Program, ValueId, evaluate, verify};
 
 /// A program, interpreted instruction by instruction.
 #[derive(Clone, Debug)]
@@ -15,6 +15,7 @@ pub struct Textbook {
     instructions: Vec<Instruction>,
     /// Offset and type of each slot.
     slots: Vec<(u32, Elementary)>,
+    arrays: Vec<Array>,
     /// The result of each instruction, in register form.
     values: Vec<u64>,
 }
@@ -26,6 +27,7 @@ impl Textbook {
         Self {
             instructions: program.instructions.clone(),
             slots: program.layout.slots().iter().map(|slot| (slot.offset, slot.ty)).collect(),
+            arrays: program.layout.arrays().to_vec(),
             values: vec![0; program.instructions.len()],
         }
     }
@@ -33,7 +35,7 @@ impl Textbook {
 
 impl Scan for Textbook {
     fn scan(&mut self, image: &mut [u8], now: i64) {
-        let Self { instructions, slots, values } = self;
+        let Self { instructions, slots, arrays, values } = self;
         for (index, instruction) in instructions.iter().enumerate() {
             let (ty, of) = (instruction.ty, |value: ValueId| values[value.index()]);
             let ty_of = |value: ValueId| instructions[value.index()].ty;
@@ -49,11 +51,27 @@ impl Scan for Textbook {
                     write(image, offset, Value::from_bits(ty, of(a)));
                     continue;
                 }
+                Op::LoadIndexed(array, index) => {
+                    let Array { first, count } = arrays[array.index()];
+                    evaluate::element(count, of(index)).map_or(0, |element| {
+                        let (offset, ty) = slots[first.index() + element as usize];
+                        read(image, offset, ty).bits()
+                    })
+                }
+                Op::StoreIndexed(array, index, a) => {
+                    let Array { first, count } = arrays[array.index()];
+                    if let Some(element) = evaluate::element(count, of(index)) {
+                        let (offset, ty) = slots[first.index() + element as usize];
+                        write(image, offset, Value::from_bits(ty, of(a)));
+                    }
+                    continue;
+                }
                 Op::Unary(op, a) => evaluate::unary(op, ty, of(a)),
                 Op::Binary(op, a, b) => evaluate::binary(op, ty, of(a), of(b)),
                 Op::Compare(op, a, b) => u64::from(evaluate::compare(op, ty_of(a), of(a), of(b))),
                 Op::Select(condition, a, b) => of(if of(condition) != 0 { a } else { b }),
                 Op::Convert(a) => evaluate::convert(ty_of(a), ty, of(a)),
+                Op::Call(helper, a, b) => evaluate::call(helper, ty, of(a), b.map(of)),
             };
         }
     }

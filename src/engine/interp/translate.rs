@@ -4,14 +4,14 @@
 //! needs it, when several others share it, or when a cell that it reads is about to change. A value that a later store
 //! puts into a slot goes there at once if nothing touches the slot before that store.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::Interpreter;
 use super::gate::{Function, Gate, compare};
 use super::step::{Kind, Step};
 use crate::elementary::{Elementary, Value};
 use crate::logic::image::write;
-use crate::logic::{Binary, Instruction, Op, Program, SlotId, Unary, ValueId};
+use crate::logic::{Array, ArrayId, Binary, Instruction, Op, Program, SlotId, Unary, ValueId};
 
 /// Constants and the time take eight bytes each, whatever their type.
 const CONSTANT_BYTES: u32 = 8;
@@ -42,7 +42,7 @@ struct Translator<'a> {
     /// Of each store, one past the place where its slot was loaded or stored before, or 0.
     access_before: Vec<usize>,
     /// Which values may be made of the cell of a slot.
-    watchers: HashMap<u32, Vec<ValueId>>,
+    watchers: BTreeMap<u32, Vec<ValueId>>,
     constants: HashMap<(u32, u64), u32>,
     gates: Vec<Gate>,
     steps: Vec<Step>,
@@ -60,8 +60,8 @@ impl<'a> Translator<'a> {
         let mut uses = vec![0; count];
         let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
         let mut last_access = vec![0; program.layout.slots().len()];
-        // The time comes right behind the image.
-        let mut cells = vec![0; (program.layout.size() + CONSTANT_BYTES) as usize];
+        // The time comes right behind the image, and then a FALSE.
+        let mut cells = vec![0; (program.layout.size() + 2 * CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
         for (index, instruction) in program.instructions.iter().enumerate() {
             for operand in instruction.op.operands() {
@@ -72,6 +72,9 @@ impl<'a> Translator<'a> {
                 Op::Store(slot, value) => {
                     first_store[value.index()].get_or_insert(index);
                     access_before[index] = std::mem::replace(&mut last_access[slot.index()], index + 1);
+                }
+                Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => {
+                    last_access[program.layout.array(array).indices()].fill(index + 1);
                 }
                 Op::Constant(bits) if instruction.ty != Elementary::Bool => {
                     constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {
@@ -92,7 +95,7 @@ impl<'a> Translator<'a> {
             uses,
             first_store,
             access_before,
-            watchers: HashMap::new(),
+            watchers: BTreeMap::new(),
             constants,
             gates: Vec::new(),
             steps: Vec::new(),
@@ -116,6 +119,7 @@ impl<'a> Translator<'a> {
         let value = ValueId(offset(index));
         match instruction.op {
             Op::Store(slot, stored) => self.store(slot, stored),
+            Op::StoreIndexed(array, place, stored) => self.store_indexed(array, place, stored),
             // What nothing uses is not computed.
             _ if self.uses[index] == 0 => {}
             Op::Constant(bits) if instruction.ty == Elementary::Bool => {
@@ -124,6 +128,7 @@ impl<'a> Translator<'a> {
             Op::Constant(bits) => self.set(value, Function::cell(self.constants[&(instruction.ty.size(), bits)])),
             Op::Now => self.set(value, Function::cell(self.program.layout.size())),
             Op::Load(slot) => self.set(value, Function::cell(self.program.layout.slot(slot).offset)),
+            Op::LoadIndexed(array, place) => self.load_indexed(value, array, place),
             op => match boolean(self.program, instruction) {
                 Some(of) => {
                     let function = self.combine(op, of);
@@ -155,8 +160,33 @@ impl<'a> Translator<'a> {
         if self.values[value.index()].as_cell() == Some(cell) {
             return;
         }
-        self.release(cell, value);
+        self.release(cell, Some(value));
         self.compute(value, cell);
+    }
+
+    fn load_indexed(&mut self, value: ValueId, array: ArrayId, index: ValueId) {
+        self.settle(index);
+        let Array { first, count } = self.program.layout.array(array);
+        let (offset, ty) = (self.program.layout.slot(first).offset, self.ty(value));
+        let target = self.target(value, ty);
+        // Only now: making the target ready can move it.
+        let index = self.values[index.index()].as_cell().unwrap_or_default();
+        self.push(Kind::LoadIndexed(ty), [index, offset, count], target);
+        self.set(value, Function::cell(target));
+    }
+
+    fn store_indexed(&mut self, array: ArrayId, index: ValueId, value: ValueId) {
+        self.settle(index);
+        self.settle(value);
+        let Array { first, count } = self.program.layout.array(array);
+        let slot = self.program.layout.slot(first);
+        let (start, ty) = (slot.offset, slot.ty);
+        let cells: Vec<u32> = self.watchers.range(start..start + count * ty.size()).map(|(cell, _)| *cell).collect();
+        for cell in cells {
+            self.release(cell, None);
+        }
+        let [index, value] = [index, value].map(|of| self.values[of.index()].as_cell().unwrap_or_default());
+        self.push(Kind::StoreIndexed(ty), [index, value, count], start);
     }
 
     /// A BOOL operation as a function of cells.
@@ -224,7 +254,7 @@ impl<'a> Translator<'a> {
             Some(cell) if self.ty(value) != Elementary::Bool => {
                 self.push(Kind::copy(self.ty(value)), [cell; 3], target);
             }
-            _ => self.gates.push(Gate::new(&function, target)),
+            _ => self.gates.push(Gate::new(&function, target, self.program.layout.size() + CONSTANT_BYTES)),
         }
         self.set(value, Function::cell(target));
     }
@@ -236,7 +266,7 @@ impl<'a> Translator<'a> {
             && self.access_before[store] <= self.at
         {
             let cell = self.program.layout.slot(slot).offset;
-            self.release(cell, value);
+            self.release(cell, Some(value));
             return cell;
         }
         self.scratch(ty)
@@ -250,10 +280,10 @@ impl<'a> Translator<'a> {
     }
 
     /// Makes a slot's cell ready to be set to a value: whatever else is made of what it holds gets another cell.
-    fn release(&mut self, cell: u32, value: ValueId) {
+    fn release(&mut self, cell: u32, value: Option<ValueId>) {
         for watcher in self.watchers.remove(&cell).unwrap_or_default() {
             let made_of_it = self.values[watcher.index()].inputs().contains(&cell);
-            if watcher != value && self.uses[watcher.index()] > 0 && made_of_it {
+            if Some(watcher) != value && self.uses[watcher.index()] > 0 && made_of_it {
                 let target = self.scratch(self.ty(watcher));
                 self.compute(watcher, target);
             }

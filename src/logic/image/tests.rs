@@ -182,3 +182,40 @@ fn unsound_layouts_are_refused() {
         assert!(problems.iter().any(|problem| problem == expected), "{problems:?} lacks {expected}");
     }
 }
+
+/// An array of so many elements, then another slot.
+fn with_array(elements: u32, earlier: Option<&EarlierLayout>) -> Layout {
+    let int = |name: String| slot(&name, Elementary::Int, Area::Memory, false);
+    let mut layout = LayoutBuilder::new();
+    let slots: Vec<SlotId> = (0..elements).map(|element| layout.slot(int(format!("a[{element}]")))).collect();
+    layout.slot(int("b".to_owned()));
+    layout.array(slots[0], elements);
+    layout.finish(earlier).unwrap()
+}
+
+#[test]
+fn an_array_that_grew_moves_as_a_whole() {
+    let old = with_array(3, None);
+    let offsets = |layout: &Layout| layout.slots().iter().map(|slot| slot.offset).collect::<Vec<_>>();
+    assert_eq!((offsets(&old), old.size()), (vec![0, 2, 4, 6], 16));
+    let earlier = EarlierLayout::from(&old);
+    assert_eq!(with_array(3, Some(&earlier)), old);
+    let grown = with_array(4, Some(&earlier));
+    assert_eq!(offsets(&grown), [16, 18, 20, 22, 6]);
+    assert_eq!(grown.problems(), Vec::<String>::new());
+    assert_eq!(offsets(&with_array(2, Some(&earlier))), [0, 2, 6]);
+}
+
+#[test]
+fn an_array_of_slots_that_are_not_side_by_side_is_refused() {
+    let good = with_array(3, None);
+    for (first, count) in [(0, 0), (0, 5), (4, 1), (0, u32::MAX), (u32::MAX, 2)] {
+        let mut layout = good.clone();
+        layout.arrays[0] = Array { first: SlotId(first), count };
+        assert_eq!(layout.problems(), ["a0 is no array: its elements are not side by side"], "{first} {count}");
+    }
+    let mut layout = good.clone();
+    layout.slots[1].ty = Elementary::Word;
+    layout.slots[1].initial = Value::default_of(Elementary::Word);
+    assert_eq!(layout.problems(), ["a0 is no array: its elements are not side by side"]);
+}
