@@ -245,6 +245,7 @@ impl Used {
                 self.expression(left);
                 self.expression(right);
             }
+            ExpressionKind::Call { arguments, .. } => arguments.iter().for_each(|argument| self.expression(argument)),
         }
     }
 
