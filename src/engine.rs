@@ -6,5 +6,6 @@
 pub mod both;
 pub mod clif;
 pub mod disassemble;
+pub mod helpers;
 pub mod interp;
 pub mod jit;

@@ -20,7 +20,7 @@ mod verify;
 
 pub use build::Builder;
 pub use image::{Area, Layout, LayoutBuilder, Slot, SlotId};
-pub use op::{Binary, Compare, Domain, Instruction, Op, Unary, ValueId};
+pub use op::{Binary, Compare, Domain, Helper, Instruction, Op, Unary, ValueId};
 pub use parse::parse;
 pub use print::print;
 pub use verify::{Problem, verify};

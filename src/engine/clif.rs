@@ -7,9 +7,12 @@
 //! extern "C" fn(base0: *mut u8, now: i64, base1: *mut u8, …)     each base: image + Chunk::bases[i]
 //! ```
 //!
-//! Code is straight line: it must never branch on data, but for the operations in [`BRANCHING`]. It computes
-//! exactly what [`evaluate`](crate::logic::evaluate) says, with every value in integer registers; BOOL is the low
-//! byte of 8 or 32 bits, of which the others mean nothing.
+//! A chunk that [calls helpers](Chunk::calls_helpers) takes one argument more, behind the last base: a pointer to the
+//! table of them, such as [`HELPERS`](super::helpers::HELPERS).
+//!
+//! Code is straight line: it must never branch on data, but for the operations in [`BRANCHING`]. Helpers do, and take
+//! a time that depends on their operands. It computes exactly what [`evaluate`](crate::logic::evaluate) says, with
+//! every value in integer registers; BOOL is the low byte of 8 or 32 bits, of which the others mean nothing.
 
 mod integer;
 mod lower;
@@ -29,7 +32,7 @@ use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_frontend::FunctionBuilderContext;
 use target_lexicon::Architecture;
 
-use crate::logic::{Binary, Program};
+use crate::logic::{Binary, Op, Program};
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
 /// they fill the six registers for arguments of x86-64; with eight of them code is 2 bytes a rung shorter, but has
@@ -84,7 +87,8 @@ pub struct Branching {
     pub reason: &'static str,
 }
 
-/// Every operation that is not straight line everywhere; all others are, and x86-64 has none of these.
+/// Every operation that is not straight line everywhere; all others are, and x86-64 has none of these. A call of a
+/// helper is no branch of the chunk, but the helper branches.
 pub const BRANCHING: &[Branching] = &[
     Branching {
         op: Binary::Divide,
@@ -111,6 +115,8 @@ pub struct Chunk {
     pub alignment: u32,
     /// Offsets into the image, in bytes, of the pointers that it takes.
     pub bases: [u32; BASES],
+    /// Whether it takes a pointer to the table of helpers, behind the last base.
+    pub calls_helpers: bool,
     /// Where in the code a section's instructions begin, in the order of the code: `(offset, section)`. A section
     /// without code of its own is left out.
     pub marks: Vec<(u32, usize)>,
@@ -174,14 +180,17 @@ impl<'a> Compiler<'a> {
             }
         }
         let alignment = self.isa.function_alignment().minimum.max(compiled.buffer.alignment);
-        Ok(Chunk { sections, code: compiled.code_buffer().to_vec(), instruction_bytes, alignment, bases, marks })
+        let code = compiled.code_buffer().to_vec();
+        let calls_helpers = calls_helpers(self.program, sections.clone());
+        Ok(Chunk { sections, code, instruction_bytes, alignment, bases, calls_helpers, marks })
     }
 
     /// Makes the function of a chunk in `self.context`.
     fn build(&mut self, sections: Range<usize>) -> [u32; BASES] {
         self.context.clear();
         let name = UserFuncName::user(0, u32::try_from(sections.start).unwrap_or(u32::MAX));
-        self.context.func = Function::with_name_signature(name, signature(self.isa));
+        self.context.func =
+            Function::with_name_signature(name, signature(self.isa, calls_helpers(self.program, sections.clone())));
         lower::chunk(self.program, sections, self.isa, &mut self.context.func, &mut self.builder_context)
     }
 }
@@ -198,13 +207,19 @@ fn generate(context: &mut Context, isa: &dyn TargetIsa) -> CodegenResult<Compile
     Ok(stencil.apply_params(&func.params))
 }
 
-/// What every chunk's function takes.
-fn signature(isa: &dyn TargetIsa) -> Signature {
+/// Whether a chunk needs the table of helpers.
+fn calls_helpers(program: &Program, sections: Range<usize>) -> bool {
+    let mut instructions = sections.flat_map(|section| &program.instructions[program.section_range(section)]);
+    instructions.any(|instruction| matches!(instruction.op, Op::Call(..)))
+}
+
+/// What a chunk's function takes.
+fn signature(isa: &dyn TargetIsa, calls_helpers: bool) -> Signature {
     let mut signature = Signature::new(CallConv::triple_default(isa.triple()));
     let pointer = AbiParam::new(isa.pointer_type());
     signature.params.push(pointer);
     signature.params.push(AbiParam::new(types::I64));
-    signature.params.extend(std::iter::repeat_n(pointer, BASES - 1));
+    signature.params.extend(std::iter::repeat_n(pointer, BASES - 1 + usize::from(calls_helpers)));
     signature
 }
 

@@ -4,7 +4,7 @@
 //! that is for the passes.
 
 use super::{
-    Binary, CHUNK_SECTIONS, Compare, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary, ValueId,
+    Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary, ValueId,
 };
 use crate::elementary::{Elementary, Value};
 
@@ -107,6 +107,11 @@ impl Builder {
     /// `a` as another type.
     pub fn convert(&mut self, a: ValueId, to: Elementary) -> ValueId {
         self.push(to, Op::Convert(a))
+    }
+
+    /// A helper of `a` and, where it takes two operands, `b`, which is of the same type.
+    pub fn call(&mut self, helper: Helper, a: ValueId, b: Option<ValueId>) -> ValueId {
+        self.push(self.ty(a), Op::Call(helper, a, b))
     }
 
     /// NOT a.

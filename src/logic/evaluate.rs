@@ -3,12 +3,12 @@
 //! This is the definition. The interpreters and the constant folder call it; compiled code is tested against it.
 //! Every function is total and must never panic, whatever the operands. Arithmetic that IEC 61131-3 leaves to
 //! the implementer is fixed here: integers wrap around, a quotient by zero is 0, a NaN that an operation makes is
-//! the canonical quiet one.
+//! the canonical quiet one. [`helper`] is the one thing here that compiled code calls, too.
 
 #[cfg(test)]
 mod tests;
 
-use super::{Binary, Compare, Unary};
+use super::{Binary, Compare, Helper, Unary};
 use crate::elementary::{Elementary, canonical, f32_of};
 
 /// The one NaN that arithmetic makes, as a REAL's bits.
@@ -116,6 +116,30 @@ pub fn compare(op: Compare, ty: Elementary, a: u64, b: u64) -> bool {
         holds(op, a.cast_signed(), b.cast_signed())
     } else {
         holds(op, a, b)
+    }
+}
+
+/// A helper's operands, all of type `ty`: REALs are computed in LREAL and rounded once. A second operand counts only
+/// where the helper takes two.
+pub fn call(function: Helper, ty: Elementary, a: u64, b: Option<u64>) -> u64 {
+    real_bits(ty, helper(function, real_of(ty, a), b.map_or(0.0, |b| real_of(ty, b))))
+}
+
+/// What a helper computes, but that a NaN may be any. `b` counts only where it takes two operands.
+///
+/// Sums, products and square roots in a fixed order, never fused, so that every build gives the same bits.
+pub fn helper(function: Helper, a: f64, b: f64) -> f64 {
+    match function {
+        Helper::Ln => libm::log(a),
+        Helper::Log10 => libm::log10(a),
+        Helper::Exp => libm::exp(a),
+        Helper::Sin => libm::sin(a),
+        Helper::Cos => libm::cos(a),
+        Helper::Tan => libm::tan(a),
+        Helper::Asin => libm::asin(a),
+        Helper::Acos => libm::acos(a),
+        Helper::Atan => libm::atan(a),
+        Helper::Power => libm::pow(a, b),
     }
 }
 

@@ -55,6 +55,8 @@ pub enum Op {
     Select(ValueId, ValueId, ValueId),
     /// The operand, of any type, as the result's type.
     Convert(ValueId),
+    /// A pure function of one or two operands of the result's type; the second is there where it takes two.
+    Call(Helper, ValueId, Option<ValueId>),
 }
 
 impl Op {
@@ -65,6 +67,7 @@ impl Op {
             Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) => [Some(a), None, None],
             Self::Binary(_, a, b) | Self::Compare(_, a, b) => [Some(a), Some(b), None],
             Self::Select(a, b, c) => [Some(a), Some(b), Some(c)],
+            Self::Call(_, a, b) => [Some(a), b, None],
         };
         operands.into_iter().flatten()
     }
@@ -80,6 +83,7 @@ impl Op {
             Self::Compare(op, a, b) => Self::Compare(op, map(a), map(b)),
             Self::Select(a, b, c) => Self::Select(map(a), map(b), map(c)),
             Self::Convert(a) => Self::Convert(map(a)),
+            Self::Call(helper, a, b) => Self::Call(helper, map(a), b.map(map)),
         }
     }
 }
@@ -216,5 +220,41 @@ operations! {
         Greater "gt" Any,
         /// Greater or equal.
         GreaterOrEqual "ge" Any,
+    }
+}
+
+operations! {
+    /// Functions too large for a few instructions: compiled code calls them, all engines the same ones. Of a REAL they
+    /// are computed in LREAL and rounded once. An LREAL is right to about a unit in the last place, the same bits
+    /// everywhere.
+    Helper {
+        /// The natural logarithm; minus infinity of zero, NaN below.
+        Ln "ln" Reals,
+        /// The logarithm to base 10; minus infinity of zero, NaN below.
+        Log10 "log" Reals,
+        /// e to the power of the operand.
+        Exp "exp" Reals,
+        /// The sine of an angle in radians; NaN of an infinity.
+        Sin "sin" Reals,
+        /// The cosine of an angle in radians; NaN of an infinity.
+        Cos "cos" Reals,
+        /// The tangent of an angle in radians; NaN of an infinity.
+        Tan "tan" Reals,
+        /// The angle from -pi/2 to pi/2 with this sine; NaN outside -1 to 1.
+        Asin "asin" Reals,
+        /// The angle from 0 to pi with this cosine; NaN outside -1 to 1.
+        Acos "acos" Reals,
+        /// The angle from -pi/2 to pi/2 with this tangent.
+        Atan "atan" Reals,
+        /// The first operand to the power of the second: 1 whenever that is 0 or the first is 1, even with a NaN; NaN
+        /// of a negative number to a power that is not whole.
+        Power "pow" Reals,
+    }
+}
+
+impl Helper {
+    /// Whether it takes a second operand.
+    pub const fn takes_two(self) -> bool {
+        matches!(self, Self::Power)
     }
 }

@@ -4,7 +4,9 @@
 
 use super::image::{Extent, Observed};
 use super::print::{UNITS, area_of};
-use super::{Binary, Compare, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Unary, ValueId, verify};
+use super::{
+    Binary, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Unary, ValueId, verify,
+};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
 use crate::source::{Source, Span};
@@ -181,11 +183,12 @@ impl Reader {
             _ => {}
         }
         let (unary, binary) = (Unary::from_mnemonic(mnemonic), Binary::from_mnemonic(mnemonic));
-        let compare = Compare::from_mnemonic(mnemonic);
+        let (compare, helper) = (Compare::from_mnemonic(mnemonic), Helper::from_mnemonic(mnemonic));
         if !matches!(mnemonic, "const" | "select" | "convert")
             && unary.is_none()
             && binary.is_none()
             && compare.is_none()
+            && helper.is_none()
         {
             return Err(line.fault("the name of an operation"));
         }
@@ -206,6 +209,8 @@ impl Reader {
                 return Err(line.fault(format!("{first} to be of type {ty}")));
             }
             return Ok(Instruction { ty: Elementary::Bool, op: Op::Compare(op, first, second) });
+        } else if let Some(helper) = helper {
+            Op::Call(helper, first, if helper.takes_two() { Some(next()?) } else { None })
         } else if mnemonic == "select" {
             Op::Select(first, next()?, next()?)
         } else {

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::image::LayoutBuilder;
-use super::{Area, Binary, Builder, Compare, Layout, Origin, Program, Slot, SlotId, Unary, ValueId};
+use super::{Area, Binary, Builder, Compare, Helper, Layout, Origin, Program, Slot, SlotId, Unary, ValueId};
 use crate::elementary::{Elementary, Value};
 
 /// A program of up to a few hundred instructions over up to forty slots.
@@ -114,6 +114,11 @@ impl Generator {
                 Some(slot) => self.builder.load(slot),
                 None => self.builder.now(),
             },
+            2 if ty.is_real() && self.rng.random_bool(0.5) => {
+                let (helper, a) = (pick(&mut self.rng, Helper::ALL), self.operand(ty));
+                let b = helper.takes_two().then(|| self.operand(ty));
+                self.builder.call(helper, a, b)
+            }
             2 => {
                 let (op, a) = (pick(&mut self.rng, Unary::ALL), self.operand(ty));
                 if !op.domain().contains(ty) {
@@ -195,6 +200,7 @@ mod tests {
                     Op::Compare(op, a, _) => (op.mnemonic(), ty_of(a)),
                     Op::Select(_, a, _) => ("select", ty_of(a)),
                     Op::Convert(a) => ("convert", ty_of(a)),
+                    Op::Call(helper, a, _) => (helper.mnemonic(), ty_of(a)),
                     Op::Load(_) => ("load", instruction.ty),
                     Op::Store(..) => ("store", instruction.ty),
                     Op::Constant(_) => ("constant", instruction.ty),
@@ -206,6 +212,7 @@ mod tests {
         expected.extend(Unary::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Binary::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Compare::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
+        expected.extend(Helper::ALL.iter().map(|helper| (helper.mnemonic(), helper.domain())));
         expected.extend(["select", "convert", "load", "store", "constant"].map(|name| (name, Domain::Any)));
         for (name, domain) in expected {
             for ty in Elementary::ALL.into_iter().filter(|ty| domain.contains(*ty)) {

@@ -114,6 +114,13 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Compare(_, a, b) => result(Elementary::Bool).and(expect(b, operand(a)?)),
         Op::Select(condition, a, b) => expect(condition, Elementary::Bool).and(expect(a, ty)).and(expect(b, ty)),
         Op::Convert(a) => operand(a).map(|_| ()),
+        Op::Call(helper, _, b) if b.is_some() != helper.takes_two() => {
+            let count = if helper.takes_two() { "two operands" } else { "one operand" };
+            Err(format!("{} takes {count}", helper.mnemonic()))
+        }
+        Op::Call(helper, a, b) => {
+            takes(helper.mnemonic(), helper.domain()).and(expect(a, ty)).and(b.map_or(Ok(()), |b| expect(b, ty)))
+        }
     }
 }
 
@@ -122,7 +129,7 @@ mod tests {
     use super::*;
     use crate::elementary::Value;
     use crate::logic::image::LayoutBuilder;
-    use crate::logic::{Area, Binary, Builder, Compare, Origin, Slot, random};
+    use crate::logic::{Area, Binary, Builder, Compare, Helper, Origin, Slot, random};
 
     /// v0 = load s0, v1 = load s1, v2 = and v0 v0, v3 = store s0 v2 | v4 = lt v1 v1 in two sections.
     fn program() -> Program {
@@ -173,6 +180,10 @@ mod tests {
             (4, int, Op::Load(SlotId(2)), "v4: s2 does not exist"),
             (4, int, Op::Store(SlotId(1), v(0)), "v4: v0 is BOOL, but INT belongs here"),
             (4, int, Op::Constant(0xFFFF), "v4: 0xffff is no INT in register form"),
+            (4, int, Op::Call(Helper::Sin, v(1), None), "v4: sin does not take INT"),
+            (4, Elementary::Real, Op::Call(Helper::Sin, v(1), None), "v4: v1 is INT, but REAL belongs here"),
+            (4, Elementary::Real, Op::Call(Helper::Sin, v(1), Some(v(1))), "v4: sin takes one operand"),
+            (4, Elementary::Real, Op::Call(Helper::Power, v(1), None), "v4: pow takes two operands"),
             (4, int, Op::Now, "v4: the result is INT, but TIME belongs here"),
         ];
         for (place, ty, op, expected) in cases {

@@ -44,7 +44,8 @@ pub(super) fn forward(program: Program) -> Program {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => Some(output.emit(instruction.ty, instruction.op)),
+            | Op::Convert(_)
+            | Op::Call(..) => Some(output.emit(instruction.ty, instruction.op)),
         }
     })
 }

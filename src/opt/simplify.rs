@@ -29,13 +29,15 @@ fn folded(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<Va
         Op::Compare(op, a, b) => u64::from(evaluate::compare(op, output.ty(a), constant(a)?, constant(b)?)),
         Op::Select(condition, a, b) => return Some(if constant(condition)? != 0 { a } else { b }),
         Op::Convert(a) => evaluate::convert(output.ty(a), ty, constant(a)?),
+        Op::Call(helper, a, None) => evaluate::call(helper, ty, constant(a)?, None),
+        Op::Call(helper, a, Some(b)) => evaluate::call(helper, ty, constant(a)?, Some(constant(b)?)),
     };
     Some(output.constant(ty, bits))
 }
 
 fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) => None,
+        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) | Op::Call(..) => None,
         Op::Unary(op, a) => unary(output, op, a),
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),

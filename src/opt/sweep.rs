@@ -25,7 +25,8 @@ pub(super) fn sweep(program: Program) -> Program {
                 | Op::Binary(..)
                 | Op::Compare(..)
                 | Op::Select(..)
-                | Op::Convert(_) => {}
+                | Op::Convert(_)
+                | Op::Call(..) => {}
             }
             if needed[index] {
                 program.instructions[index].op.operands().for_each(|operand| needed[operand.index()] = true);

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, SigRef, Type, Value, types};
 use cranelift_codegen::isa::TargetIsa;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
@@ -37,7 +37,7 @@ pub(super) fn chunk(
     for operand in program.instructions[first..end].iter().flat_map(|instruction| instruction.op.operands()) {
         uses[operand.index() - first] += 1;
     }
-    let params = builder.block_params(block);
+    let params = builder.block_params(block).to_vec();
     let now = params[1];
     let mut pointers = [(0, params[0]); BASES];
     for (index, pointer) in pointers.iter_mut().enumerate() {
@@ -50,6 +50,8 @@ pub(super) fn chunk(
         builder,
         now,
         pointers,
+        helpers: params.get(BASES + 1).copied(),
+        helper_signature: None,
         held: vec![None; end - first],
         uses,
         pending: HashMap::new(),
@@ -77,6 +79,10 @@ pub(super) struct Lowering<'a, 'f> {
     now: Value,
     /// Offsets and values of the pointers.
     pointers: [(u32, Value); BASES],
+    /// The table of helpers, where the chunk calls any.
+    pub(super) helpers: Option<Value>,
+    /// What helpers take and give, once one is called.
+    pub(super) helper_signature: Option<SigRef>,
     /// By instruction of the chunk: what holds its value, once made.
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
@@ -115,6 +121,7 @@ impl Lowering<'_, '_> {
                 self.choose(condition, a, b)
             }
             Op::Convert(a) => self.convert(a, ty),
+            Op::Call(helper, a, b) => self.call(helper, ty, a, b),
         };
         let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
         let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
@@ -149,7 +156,8 @@ impl Lowering<'_, '_> {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => None,
+            | Op::Convert(_)
+            | Op::Call(..) => None,
         }
     }
 
@@ -193,7 +201,8 @@ impl Lowering<'_, '_> {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Select(..)
-            | Op::Convert(_) => unreachable!("operands come before, are no stores, and only the above are late"),
+            | Op::Convert(_)
+            | Op::Call(..) => unreachable!("operands come before, are no stores, and only the above are late"),
         }
     }
 

@@ -56,7 +56,8 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
         | Op::Binary(..)
         | Op::Compare(..)
         | Op::Select(..)
-        | Op::Convert(_) => None,
+        | Op::Convert(_)
+        | Op::Call(..) => None,
     })
 }
 

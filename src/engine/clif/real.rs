@@ -5,12 +5,12 @@
 //! operations, since Cranelift's own branch.
 
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Type, Value, types};
 
 use super::lower::{Lowering, holder};
 use crate::elementary::Elementary;
 use crate::logic::evaluate::{NAN32, NAN64};
-use crate::logic::{Binary, Compare, Unary, ValueId};
+use crate::logic::{Binary, Compare, Helper, Unary, ValueId};
 
 /// 2^52 as an LREAL: from here on all are whole.
 const WHOLE: u64 = 0x4330_0000_0000_0000;
@@ -83,6 +83,35 @@ impl Lowering<'_, '_> {
             | Binary::RotateRight => unreachable!("not an operation on reals in a verified program"),
         };
         self.bits_of(ty, value)
+    }
+
+    /// A helper, on LREALs, whatever the type.
+    pub(super) fn call(&mut self, helper: Helper, ty: Elementary, a: ValueId, b: Option<ValueId>) -> Value {
+        let a = self.lreal(ty, a);
+        let b = b.map_or(a, |b| self.lreal(ty, b));
+        let Some(table) = self.helpers else { unreachable!("a chunk with a call takes the table") };
+        let pointer = self.builder.func.dfg.value_type(table);
+        let row = i32::try_from(helper as usize * pointer.bytes() as usize).unwrap_or(i32::MAX);
+        let function = self.builder.ins().load(pointer, MemFlagsData::trusted().with_readonly(), table, row);
+        let signature = match self.helper_signature {
+            Some(signature) => signature,
+            None => {
+                let mut signature = Signature::new(self.builder.func.signature.call_conv);
+                signature.params.extend([AbiParam::new(types::F64); 2]);
+                signature.returns.push(AbiParam::new(types::F64));
+                *self.helper_signature.insert(self.builder.import_signature(signature))
+            }
+        };
+        let call = self.builder.ins().call_indirect(signature, function, &[a, b]);
+        let value = self.builder.inst_results(call)[0];
+        let value = if ty == Elementary::Real { self.builder.ins().fdemote(types::F32, value) } else { value };
+        self.bits_of(ty, value)
+    }
+
+    fn lreal(&mut self, ty: Elementary, id: ValueId) -> Value {
+        let value = self.value(id);
+        let value = self.float_of(ty, value);
+        if ty == Elementary::Real { self.builder.ins().fpromote(types::F64, value) } else { value }
     }
 
     pub(super) fn real_compare(&mut self, op: Compare, ty: Elementary, a: ValueId, b: ValueId) -> Value {

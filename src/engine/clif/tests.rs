@@ -5,7 +5,7 @@ use super::{BRANCHING, Chunk, Compiler, text};
 use crate::elementary::{Elementary, Value};
 use crate::engine::disassemble;
 use crate::engine::jit::host_isa;
-use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
+use crate::logic::{Area, Binary, Builder, Helper, LayoutBuilder, Op, Origin, Program, Slot, SlotId, random};
 
 /// A program of sections over `slots` BOOLs, each made by `section`.
 fn booleans(slots: u32, sections: u32, mut section: impl FnMut(&mut Builder, u32, &[SlotId])) -> Program {
@@ -136,4 +136,28 @@ fn random_programs_have_text_with_every_section_that_stores() {
             }
         }
     }
+}
+
+#[test]
+fn only_chunks_that_call_helpers_take_the_table_of_them() {
+    let real = |name: &str| {
+        let (ty, initial) = (Elementary::Real, Value::default_of(Elementary::Real));
+        Slot { name: name.to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 }
+    };
+    let mut layout = LayoutBuilder::new();
+    let (a, b) = (layout.slot(real("a")), layout.slot(real("b")));
+    let mut logic = Builder::new("angles", layout.finish(None).expect("a small image"));
+    for helper in [None, Some(Helper::Sin), None] {
+        let angle = logic.load(a);
+        let result = helper.map_or(angle, |helper| logic.call(helper, angle, None));
+        logic.store(b, result);
+        logic.end_section(Origin { label: "r".to_owned(), line: 1 });
+    }
+    let mut program = logic.finish();
+    program.sections.iter_mut().for_each(|section| section.starts_chunk = true);
+    let isa = host_isa().expect("a host with a back end");
+    let mut compiler = Compiler::new(&program, &*isa);
+    let chunks: Vec<Chunk> = program.chunks().into_iter().map(|chunk| compiler.chunk(chunk).expect("code")).collect();
+    assert_eq!(chunks.iter().map(|chunk| chunk.calls_helpers).collect::<Vec<_>>(), [false, true, false]);
+    assert_eq!(chunks[0].code, chunks[2].code);
 }

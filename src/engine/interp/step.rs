@@ -4,7 +4,7 @@
 
 use crate::elementary::{Elementary, Value};
 use crate::logic::image::{read, write};
-use crate::logic::{Binary, Compare, Instruction, Op, Unary, evaluate};
+use crate::logic::{Binary, Compare, Helper, Instruction, Op, Unary, evaluate};
 
 /// Sets a cell to what an operation makes of others, after some gates.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,7 @@ pub(super) enum Kind {
     Binary(Binary, Elementary),
     Compare(Compare, Elementary),
     Convert(Elementary, Elementary),
+    Call(Helper, Elementary),
 }
 
 impl Kind {
@@ -71,6 +72,7 @@ impl Kind {
             Op::Binary(op, ..) => Self::Binary(op, of),
             Op::Compare(op, ..) => Self::Compare(op, of),
             Op::Convert(_) => Self::Convert(of, instruction.ty),
+            Op::Call(helper, ..) => Self::Call(helper, of),
         };
         Some((kind, false))
     }
@@ -107,7 +109,9 @@ impl Step {
             Kind::LessOrEqual64 => self.put(cells, [u8::from(signed(cells, a) <= signed(cells, b))]),
             Kind::Equal64 => self.put(cells, [u8::from(signed(cells, a) == signed(cells, b))]),
             Kind::NotEqual64 => self.put(cells, [u8::from(signed(cells, a) != signed(cells, b))]),
-            Kind::Unary(..) | Kind::Binary(..) | Kind::Compare(..) | Kind::Convert(..) => self.evaluate(cells),
+            Kind::Unary(..) | Kind::Binary(..) | Kind::Compare(..) | Kind::Convert(..) | Kind::Call(..) => {
+                self.evaluate(cells);
+            }
         }
     }
 
@@ -126,6 +130,10 @@ impl Step {
                 (Elementary::Bool, u64::from(holds))
             }
             Kind::Convert(from, to) => (to, evaluate::convert(from, to, read(cells, a, from).bits())),
+            Kind::Call(helper, ty) => {
+                let second = helper.takes_two().then(|| read(cells, b, ty).bits());
+                (ty, evaluate::call(helper, ty, read(cells, a, ty).bits(), second))
+            }
             _ => return,
         };
         write(cells, self.target, Value::from_bits(ty, bits));

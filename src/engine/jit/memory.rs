@@ -8,9 +8,13 @@ use std::io;
 use memmap2::{Mmap, MmapMut};
 
 use crate::engine::clif::{BASES, Chunk};
+use crate::engine::helpers::{HELPERS, HelperFunction};
 
 /// The type of a chunk's function: the image at each base, with the time second.
 type Function = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8);
+
+/// The type of the function of a chunk that calls helpers: it takes the table of them, too.
+type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const HelperFunction);
 
 /// Installed code.
 #[derive(Debug)]
@@ -23,8 +27,14 @@ pub(super) struct Code {
 }
 
 #[derive(Clone, Copy, Debug)]
+enum Entry {
+    Plain(Function),
+    Helped(HelpedFunction),
+}
+
+#[derive(Clone, Copy, Debug)]
 struct Call {
-    function: Function,
+    entry: Entry,
     bases: [u32; BASES],
 }
 
@@ -48,11 +58,16 @@ impl Code {
         let pages = pages.make_exec()?;
         synchronise(&pages)?;
         let call = |(chunk, start): (&Chunk, &usize)| {
-            let entry = pages[*start..].as_ptr();
-            // SAFETY: at `entry` lies the whole of a function that Cranelift compiled for this machine with the
-            // signature `Function` and the C calling convention; `_pages` keeps it there as long as the call.
-            let function = unsafe { std::mem::transmute::<*const u8, Function>(entry) };
-            Call { function, bases: chunk.bases }
+            let code = pages[*start..].as_ptr();
+            let entry = if chunk.calls_helpers {
+                // SAFETY: as below, with the signature `HelpedFunction`, which chunks that call helpers have.
+                Entry::Helped(unsafe { std::mem::transmute::<*const u8, HelpedFunction>(code) })
+            } else {
+                // SAFETY: at `code` lies the whole of a function that Cranelift compiled for this machine with the
+                // signature `Function` and the C calling convention; `_pages` keeps it there as long as the call.
+                Entry::Plain(unsafe { std::mem::transmute::<*const u8, Function>(code) })
+            };
+            Call { entry, bases: chunk.bases }
         };
         let calls = chunks.iter().zip(&starts).map(call).collect();
         Ok(Self { calls, reach: image_size, _pages: Some(pages) })
@@ -65,12 +80,19 @@ impl Code {
     pub(super) fn run(&self, image: &mut [u8], now: i64) {
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
         let image = image.as_mut_ptr();
-        for Call { function, bases: [a, b, c, d, e] } in &self.calls {
+        for Call { entry, bases: [a, b, c, d, e] } in &self.calls {
             let at = |base: u32| image.wrapping_add(base as usize);
+            let (a, b, c, d, e) = (at(*a), at(*b), at(*c), at(*d), at(*e));
             // SAFETY: the chunk reads and writes the slots of its layout, at the pointers' offsets from the image,
             // and of BOOLs up to 3 bytes more; all are below the layout's size, and the image is as long. The
-            // image is borrowed mutably, so that nobody else sees it.
-            unsafe { function(at(*a), now, at(*b), at(*c), at(*d), at(*e)) };
+            // image is borrowed mutably, so that nobody else sees it. The table has a function for every helper, of
+            // the type that chunks call, and lasts for ever.
+            unsafe {
+                match entry {
+                    Entry::Plain(function) => function(a, now, b, c, d, e),
+                    Entry::Helped(function) => function(a, now, b, c, d, e, HELPERS.as_ptr()),
+                }
+            }
         }
     }
 }
