@@ -9,47 +9,59 @@ use crate::ladder::functions::{Function, StandardFunction};
 const SECOND: i128 = 1_000_000_000;
 const REAL_SECOND: f64 = 1e9;
 
-/// What became of a call.
-pub(super) enum Call {
-    /// A constant.
-    Value(Value),
-    /// More than the type holds.
-    Overflow,
-    /// Something that is computed when the program runs.
-    Open,
-}
-
-/// A function of constants of the types that it takes, with a result of type `ty`.
-pub(super) fn function(function: Function, ty: Elementary, arguments: &[Value]) -> Call {
+/// A function of constants of the types that it takes, with a result of type `ty`; `None` where that does not fit.
+pub(super) fn function(function: Function, ty: Elementary, arguments: &[Value]) -> Option<Value> {
     let value = match (function, arguments) {
-        (Function::Standard(function), _) => match standard(function, ty, arguments) {
-            Some(value) => value,
-            None => return Call::Open,
-        },
+        (Function::Standard(function), _) => standard(function, ty, arguments),
         (Function::Convert { .. }, [value]) => convert(ty, *value),
         (Function::Truncate { .. }, [value]) => value.as_real().map(|real| saturated(ty, real.trunc())),
-        _ => return Call::Open,
+        _ => None,
     };
-    match value.filter(|value| value.as_real().is_none_or(f64::is_finite)) {
-        Some(value) => Call::Value(value),
-        None => Call::Overflow,
-    }
+    value.filter(|value| value.as_real().is_none_or(f64::is_finite))
 }
 
-/// `None`: it is not for constants; `Some(None)`: it does not fit.
-fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> Option<Option<Value>> {
+fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> Option<Value> {
     use StandardFunction as F;
-    Some(match (function, arguments) {
-        (F::Absolute, [value]) => match (value.as_real(), value.as_integer()) {
-            (Some(real), _) => Value::real(ty, real.abs()),
-            (None, integer) => Value::integer(ty, integer?.abs()),
+    let real = |compute: fn(f64) -> f64| Value::real(ty, compute(arguments.first()?.as_real()?));
+    match (function, arguments) {
+        (F::Absolute, [value]) => match value.as_integer() {
+            Some(integer) => Value::integer(ty, integer.abs()),
+            None => real(f64::abs),
         },
-        (F::SquareRoot, [value]) => Value::real(ty, value.as_real()?.sqrt()),
+        (F::SquareRoot, _) => real(f64::sqrt),
+        (F::Ln, _) => real(libm::log),
+        (F::Log, _) => real(libm::log10),
+        (F::Exp, _) => real(libm::exp),
+        (F::Sin, _) => real(libm::sin),
+        (F::Cos, _) => real(libm::cos),
+        (F::Tan, _) => real(libm::tan),
+        (F::Asin, _) => real(libm::asin),
+        (F::Acos, _) => real(libm::acos),
+        (F::Atan, _) => real(libm::atan),
+        (F::Power, [base, exponent]) => {
+            let exponent = exponent.as_real().or_else(|| exponent.as_integer().map(|integer| integer as f64))?;
+            Value::real(ty, libm::pow(base.as_real()?, exponent))
+        }
         (F::Add, _) => chain(BinaryOperator::Add, arguments),
         (F::Multiply, _) => chain(BinaryOperator::Multiply, arguments),
         (F::And, _) => chain(BinaryOperator::And, arguments),
         (F::Or, _) => chain(BinaryOperator::Or, arguments),
         (F::Xor, _) => chain(BinaryOperator::Xor, arguments),
+        (F::ShiftLeft | F::ShiftRight, [value, amount]) => {
+            let amount = u32::try_from(amount.as_integer()?).ok().filter(|amount| *amount < ty.bits());
+            let shifted = |amount| match function {
+                F::ShiftLeft => value.bits() << amount,
+                _ => value.bits() >> amount,
+            };
+            Some(Value::from_bits(ty, amount.map_or(0, shifted)))
+        }
+        (F::RotateLeft | F::RotateRight, [value, amount]) => {
+            let left = if function == F::RotateLeft { amount.as_integer()? } else { -amount.as_integer()? };
+            let left = u32::try_from(left.rem_euclid(i128::from(ty.bits()))).ok()?;
+            // A window as wide as the value over two copies of it.
+            let twice = u128::from(value.bits()) << ty.bits() | u128::from(value.bits());
+            Some(wrapped(ty, (twice >> (ty.bits() - left)).cast_signed()))
+        }
         (F::Select, [which, zero, one]) => Some(if which.is_true() { *one } else { *zero }),
         (F::Multiplex, [which, inputs @ ..]) => {
             let chosen = usize::try_from(which.as_integer()?).ok().and_then(|which| inputs.get(which));
@@ -66,9 +78,22 @@ fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> 
         (F::Equal, _) => Some(sequence(BinaryOperator::Equal, arguments)),
         (F::LessOrEqual, _) => Some(sequence(BinaryOperator::LessOrEqual, arguments)),
         (F::Less, _) => Some(sequence(BinaryOperator::Less, arguments)),
-        // Shifts, and durations by numbers.
-        _ => return None,
-    })
+        (F::MultiplyTime | F::DivideTime, [duration, scale]) => {
+            let nanoseconds = duration.as_integer()?;
+            match (scale.as_integer(), scale.as_real()) {
+                (Some(scale), _) if function == F::MultiplyTime => Value::integer(ty, nanoseconds * scale),
+                (Some(scale), _) => Value::integer(ty, nanoseconds.checked_div(scale).unwrap_or(0)),
+                (None, scale) => {
+                    let scale = scale?;
+                    let nanoseconds = nanoseconds as f64;
+                    let scaled = if function == F::MultiplyTime { nanoseconds * scale } else { nanoseconds / scale };
+                    scaled.is_finite().then(|| saturated(ty, scaled.round_ties_even()))
+                }
+            }
+        }
+        // The others are operators of one or two operands, and were folded as such.
+        _ => None,
+    }
 }
 
 fn chain(op: BinaryOperator, arguments: &[Value]) -> Option<Value> {

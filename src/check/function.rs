@@ -249,14 +249,11 @@ impl Checker<'_> {
     ) -> Option<Operand> {
         let constants: Option<Vec<_>> = arguments.iter().map(Expression::constant).collect();
         if let Some(constants) = constants {
-            match fold::function(function, ty, &constants) {
-                fold::Call::Value(value) => return Some(Operand::Typed(constant(value))),
-                fold::Call::Overflow => {
-                    self.overflow(Some(ty), span);
-                    return None;
-                }
-                fold::Call::Open => {}
+            let value = fold::function(function, ty, &constants);
+            if value.is_none() {
+                self.overflow(Some(ty), span);
             }
+            return value.map(constant).map(Operand::Typed);
         }
         Some(Operand::Typed(Expression { ty, kind: ExpressionKind::Call { function, arguments } }))
     }

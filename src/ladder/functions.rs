@@ -64,7 +64,7 @@ pub enum ParameterType {
     Exactly(Elementary),
     /// A type of its own out of a class.
     Own(Class),
-    /// A factor or divisor of a TIME: what widens to LINT becomes one, REAL becomes LREAL.
+    /// A number beside an operand of another type: what widens to LINT becomes one, REAL becomes LREAL.
     Scale,
 }
 
@@ -168,6 +168,26 @@ functions! {
     Absolute "ABS" Number ("IN": T) -> T;
     /// The square root.
     SquareRoot "SQRT" Real ("IN": T) -> T;
+    /// The natural logarithm.
+    Ln "LN" Real ("IN": T) -> T;
+    /// The logarithm to base 10.
+    Log "LOG" Real ("IN": T) -> T;
+    /// e to a power.
+    Exp "EXP" Real ("IN": T) -> T;
+    /// The sine of an angle in radians.
+    Sin "SIN" Real ("IN": T) -> T;
+    /// The cosine.
+    Cos "COS" Real ("IN": T) -> T;
+    /// The tangent.
+    Tan "TAN" Real ("IN": T) -> T;
+    /// The angle with this sine.
+    Asin "ASIN" Real ("IN": T) -> T;
+    /// The angle with this cosine.
+    Acos "ACOS" Real ("IN": T) -> T;
+    /// The angle with this tangent.
+    Atan "ATAN" Real ("IN": T) -> T;
+    /// A number to a power.
+    Power "EXPT" Real ("IN1": T, "IN2": Number) -> T;
     /// The sum.
     Add "ADD" Magnitude ("IN1": T, "IN2": T) more -> T;
     /// The product.
@@ -335,7 +355,7 @@ mod tests {
             assert!(function.is_some(), "{name}");
             assert_eq!(Function::from_name(&name.to_lowercase()), function, "{name}");
         }
-        assert_eq!(Function::names().len(), 31 + 1 + 16 * 16 + 8 * 3);
+        assert_eq!(Function::names().len(), 41 + 1 + 16 * 16 + 8 * 3);
         for name in ["", "_", "INT_TO", "TO_", "TO_STRING", "INT_TO_REAL_TO_INT", "INT_TRUNC_INT", "TRUNC_REAL", "é"] {
             assert_eq!(Function::from_name(name), None, "{name}");
         }

@@ -5,7 +5,7 @@ use super::Lowering;
 use crate::check::Expression;
 use crate::elementary::{Elementary, Value};
 use crate::ladder::functions::{Function, StandardFunction};
-use crate::logic::{Binary, Compare, Unary, ValueId};
+use crate::logic::{Binary, Compare, Helper, Unary, ValueId};
 
 const SECOND: i64 = 1_000_000_000;
 /// From here on every LREAL is whole.
@@ -27,6 +27,20 @@ impl Lowering<'_> {
         match function {
             F::Absolute => self.logic.unary(Unary::Absolute, values[0]),
             F::SquareRoot => self.logic.unary(Unary::SquareRoot, values[0]),
+            F::Ln => self.logic.call(Helper::Ln, values[0], None),
+            F::Log => self.logic.call(Helper::Log10, values[0], None),
+            F::Exp => self.logic.call(Helper::Exp, values[0], None),
+            F::Sin => self.logic.call(Helper::Sin, values[0], None),
+            F::Cos => self.logic.call(Helper::Cos, values[0], None),
+            F::Tan => self.logic.call(Helper::Tan, values[0], None),
+            F::Asin => self.logic.call(Helper::Asin, values[0], None),
+            F::Acos => self.logic.call(Helper::Acos, values[0], None),
+            F::Atan => self.logic.call(Helper::Atan, values[0], None),
+            F::Power => {
+                let (base, exponent) = (self.to(values[0], Elementary::Lreal), self.to(values[1], Elementary::Lreal));
+                let power = self.logic.call(Helper::Power, base, Some(exponent));
+                self.to(power, ty)
+            }
             F::Add | F::AddTime => self.chain(Binary::Add, values),
             F::Multiply => self.chain(Binary::Multiply, values),
             F::Subtract | F::SubtractTime => self.chain(Binary::Subtract, values),

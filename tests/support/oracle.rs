@@ -6,6 +6,7 @@
 
 mod block;
 mod expression;
+mod function;
 #[cfg(test)]
 mod tests;
 mod walk;

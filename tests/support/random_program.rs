@@ -6,6 +6,7 @@
 mod circuit;
 mod declaration;
 mod expression;
+mod function;
 
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
