@@ -43,6 +43,8 @@ fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> 
         F::And => reduce(arguments, |a, b| Value::from_bits(ty, a.bits() & b.bits())),
         F::Or => reduce(arguments, |a, b| Value::from_bits(ty, a.bits() | b.bits())),
         F::Xor => reduce(arguments, |a, b| Value::from_bits(ty, a.bits() ^ b.bits())),
+        // By less than nothing is by too much.
+        F::ShiftLeft | F::ShiftRight if number(arguments[1]) < 0 => Value::default_of(ty),
         F::ShiftLeft => by_places(first, |place| place.checked_sub(number(arguments[1]))),
         F::ShiftRight => by_places(first, |place| place.checked_add(number(arguments[1]))),
         F::RotateLeft => by_places(first, |place| Some((place - number(arguments[1])).rem_euclid(ty.bits().into()))),
@@ -140,7 +142,7 @@ fn nearest_in_range(ty: Elementary, whole: f64) -> Value {
     Value::integer(ty, number.max(least).min(greatest)).expect("within the range")
 }
 
-/// IEC 61131-3, 6.6.2.5.3: by value; what does not fit an integer keeps its low bits, what does not fit from a real
+/// By value; what does not fit an integer keeps its low bits, what does not fit from a real
 /// number becomes the nearest that does. A duration counts its seconds.
 fn convert(value: Value, to: Elementary) -> Value {
     let from = value.ty();

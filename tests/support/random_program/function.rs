@@ -110,6 +110,6 @@ fn call(name: &str, arguments: Vec<FunctionArgument>) -> Expression {
 fn parameter(function: StandardFunction, place: usize) -> rung::ladder::Name {
     let listed = function.parameters().get(place).map(|parameter| parameter.name.to_owned());
     // The inputs of MUX are numbered from 0, behind its selector.
-    let number = if function == StandardFunction::Multiplex { place - 1 } else { place + 1 };
-    drawing::name(&listed.unwrap_or_else(|| format!("IN{number}")))
+    let first = if function == StandardFunction::Multiplex { 0 } else { 2 };
+    drawing::name(&listed.unwrap_or_else(|| format!("IN{}", place - 1 + first)))
 }
