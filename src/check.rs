@@ -6,7 +6,7 @@
 //! 1. `declare`: the declared names, their types and addresses, then their initial values.
 //! 2. `collect`: what the rungs declare by use (instances, addresses), and how deep they nest.
 //! 3. `address`: which addresses share storage, and which overlap.
-//! 4. `network`, `jump`, `block`, `place`, `expression`, `constant`: the rungs, element by element.
+//! 4. `network`, `jump`, `block`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by element.
 //! 5. `usage`: what only the whole program shows, such as unused names and double coils.
 //!
 //! Rungs that are off are checked like the others, and what they name counts as used; but they are not in the
@@ -18,6 +18,8 @@ mod collect;
 mod constant;
 mod declare;
 mod expression;
+mod fold;
+mod function;
 mod jump;
 mod model;
 mod network;

@@ -87,6 +87,7 @@ codes! {
     CoilOnInput = 405 Error "a coil writes an input",
     OverwrittenInput = 406 Warning "a coil writes an input, which the next copy-in overwrites",
     DivisionByZero = 407 Warning "a division by the constant zero",
+    WrongArguments = 408 Error "arguments that a function does not take",
     // Structure.
     DoubleCoil = 501 Warning "two coils write the same variable",
     NeverConducts = 502 Warning "a rung that can never conduct",

@@ -10,9 +10,12 @@
 //! order of the tree.
 
 mod expression;
+pub mod functions;
 pub mod library;
 
-pub use expression::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
+pub use expression::{
+    BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Reference, Root, Step, UnaryOperator,
+};
 
 use crate::source::Span;
 

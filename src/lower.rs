@@ -1,12 +1,13 @@
 //! Lowering: from a checked program to one straight-line scan of logic.
 //!
 //! `slots` gives every variable, pin and memory its slot; `network` and `expression` turn the rungs into
-//! primitives, element by element in the order of the drawing; `blocks` has each function block's rule; `jump`
-//! keeps what a jump leaves out from having an effect. The code
-//! that comes out is naive on purpose: nothing here may simplify or reorder, that is for the passes.
+//! primitives, element by element in the order of the drawing; `blocks` has each function block's rule, `functions` each
+//! function's; `jump` keeps what a jump leaves out from having an effect. The code that comes out is naive on purpose:
+//! nothing here may simplify or reorder, that is for the passes.
 
 mod blocks;
 mod expression;
+mod functions;
 mod jump;
 mod network;
 mod slots;

@@ -102,6 +102,11 @@ impl Checker<'_> {
                 self.collect_expression(left, depth)?;
                 self.collect_expression(right, depth)?;
             }
+            ExpressionKind::Call { arguments, .. } => {
+                for argument in arguments {
+                    self.collect_expression(&argument.value, depth)?;
+                }
+            }
         }
         Ok(())
     }

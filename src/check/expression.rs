@@ -48,8 +48,13 @@ impl Expression {
 impl Checker<'_> {
     /// An expression that must be of a type. `None`: that was reported.
     pub(super) fn value(&mut self, expression: &ladder::Expression, ty: Elementary) -> Option<Expression> {
-        let operand = self.operand(expression)?;
-        self.coerce(operand, ty, expression.span)
+        let operand = match &expression.kind {
+            ladder::ExpressionKind::Call { function, arguments } => {
+                self.function(function, arguments, expression.span, Some(ty))
+            }
+            _ => self.operand(expression),
+        };
+        self.coerce(operand?, ty, expression.span)
     }
 
     /// An expression of whatever type. `None`: something in it is wrong, and was reported.
@@ -59,6 +64,9 @@ impl Checker<'_> {
             ladder::ExpressionKind::Read(reference) => self.read(reference).map(Operand::Typed),
             ladder::ExpressionKind::Unary(op, operand) => self.unary(*op, operand, expression.span),
             ladder::ExpressionKind::Binary(op, left, right) => self.binary(*op, left, right, expression.span),
+            ladder::ExpressionKind::Call { function, arguments } => {
+                self.function(function, arguments, expression.span, None)
+            }
         }
     }
 
@@ -127,8 +135,7 @@ impl Checker<'_> {
 
     fn unary(&mut self, op: UnaryOperator, inner: &ladder::Expression, span: Span) -> Option<Operand> {
         let (domain, takes) = types::unary_domain(op);
-        let name = if op == UnaryOperator::Not { "NOT" } else { "minus" };
-        let operand = match &inner.kind {
+        match &inner.kind {
             ladder::ExpressionKind::Literal(literal @ (Literal::Integer { .. } | Literal::Real { .. }))
                 if op == UnaryOperator::Negate =>
             {
@@ -136,21 +143,29 @@ impl Checker<'_> {
                 if let Operand::Typed(Expression { ty, .. }) = negative
                     && !takes(ty)
                 {
-                    self.not_taken(name, domain, ty.name(), inner.span);
+                    self.not_taken(unary_name(op), domain, ty.name(), inner.span);
                     return None;
                 }
-                return Some(negative);
+                Some(negative)
             }
-            _ => self.operand(inner)?,
-        };
+            _ => {
+                let operand = self.operand(inner)?;
+                self.unary_of(op, operand, inner.span, span)
+            }
+        }
+    }
+
+    /// An operator on an operand that stands at `inner`.
+    pub(super) fn unary_of(&mut self, op: UnaryOperator, operand: Operand, inner: Span, span: Span) -> Option<Operand> {
+        let (domain, takes) = types::unary_domain(op);
         match operand {
             Operand::Untyped(number) => match number.unary(op) {
                 Folded::Value(number) => return Some(Operand::Untyped(number)),
-                Folded::Mismatch => self.not_taken(name, domain, number.describe(), inner.span),
+                Folded::Mismatch => self.not_taken(unary_name(op), domain, number.describe(), inner),
                 Folded::Overflow | Folded::Bool(_) => self.overflow(None, span),
             },
             Operand::Typed(operand) if !takes(operand.ty) => {
-                self.not_taken(name, domain, operand.ty.name(), inner.span);
+                self.not_taken(unary_name(op), domain, operand.ty.name(), inner);
             }
             Operand::Typed(operand) => {
                 let ty = operand.ty;
@@ -175,16 +190,27 @@ impl Checker<'_> {
     ) -> Option<Operand> {
         // Both first, so that errors in both are found.
         let (a, b) = (self.operand(left), self.operand(right));
-        let (a, b) = match (a?, b?) {
-            (Operand::Untyped(a), Operand::Untyped(b)) => return self.exact(op, a, b, right.span, span),
+        self.binary_of(op, (a?, left.span), (b?, right.span), span)
+    }
+
+    /// An operator on two operands, each with its place.
+    pub(super) fn binary_of(
+        &mut self,
+        op: BinaryOperator,
+        (a, left): (Operand, Span),
+        (b, right): (Operand, Span),
+        span: Span,
+    ) -> Option<Operand> {
+        let (a, b) = match (a, b) {
+            (Operand::Untyped(a), Operand::Untyped(b)) => return self.exact(op, a, b, right, span),
             (Operand::Typed(a), Operand::Untyped(b)) => {
                 let ty = beside(b, a.ty);
-                let (a, b) = (self.coerce(Operand::Typed(a), ty, left.span), self.number(b, ty, right.span));
+                let (a, b) = (self.coerce(Operand::Typed(a), ty, left), self.number(b, ty, right));
                 (a?, constant(b?))
             }
             (Operand::Untyped(a), Operand::Typed(b)) => {
                 let ty = beside(a, b.ty);
-                let (a, b) = (self.number(a, ty, left.span), self.coerce(Operand::Typed(b), ty, right.span));
+                let (a, b) = (self.number(a, ty, left), self.coerce(Operand::Typed(b), ty, right));
                 (constant(a?), b?)
             }
             (Operand::Typed(a), Operand::Typed(b)) => {
@@ -195,12 +221,12 @@ impl Checker<'_> {
                     self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).hint(hint));
                     return None;
                 };
-                let a = self.coerce(Operand::Typed(a), ty, left.span);
-                let b = self.coerce(Operand::Typed(b), ty, right.span);
+                let a = self.coerce(Operand::Typed(a), ty, left);
+                let b = self.coerce(Operand::Typed(b), ty, right);
                 (a?, b?)
             }
         };
-        self.typed_binary(op, a, b, right.span, span).map(Operand::Typed)
+        self.typed_binary(op, a, b, right, span).map(Operand::Typed)
     }
 
     /// Two operands of one type.
@@ -257,12 +283,12 @@ impl Checker<'_> {
         }
     }
 
-    fn not_taken(&mut self, op: &str, domain: &str, found: &str, span: Span) {
+    pub(super) fn not_taken(&mut self, op: &str, domain: &str, found: &str, span: Span) {
         let message = format!("{op} works on {domain}, and this is {}", types::with_article(found));
         self.report.push(Diagnostic::new(Code::TypeMismatch, span, message));
     }
 
-    fn overflow(&mut self, ty: Option<Elementary>, span: Span) {
+    pub(super) fn overflow(&mut self, ty: Option<Elementary>, span: Span) {
         self.report.push(match ty {
             Some(ty) => out_of_range(format!("the value of this constant is outside the range of {ty}"), ty, span),
             None => Diagnostic::new(Code::OutOfRange, span, "no type holds the value of this constant"),
@@ -275,6 +301,13 @@ impl Checker<'_> {
             let message = format!("what is divided by zero here is {result}");
             self.report.push(Diagnostic::new(Code::DivisionByZero, span, message));
         }
+    }
+}
+
+fn unary_name(op: UnaryOperator) -> &'static str {
+    match op {
+        UnaryOperator::Not => "NOT",
+        UnaryOperator::Negate => "minus",
     }
 }
 

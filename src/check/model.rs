@@ -4,6 +4,7 @@
 //! all and made by this module's parent only, so that whoever holds a [`Checked`] holds a program that runs.
 
 use crate::elementary::{Elementary, Value};
+use crate::ladder::functions::Function;
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{Address, BinaryOperator, CoilKind, ContactKind, UnaryOperator, VariableClass};
 use crate::source::Span;
@@ -246,4 +247,11 @@ pub enum ExpressionKind {
     Binary(BinaryOperator, Box<Expression>, Box<Expression>),
     /// An operand of a narrower numeric type, widened without loss; INT to REAL and DINT to LREAL are such, too.
     Widen(Box<Expression>),
+    /// A function of operands of the types that its parameters have.
+    Call {
+        /// Which.
+        function: Function,
+        /// Its arguments, in the order of the parameters.
+        arguments: Vec<Expression>,
+    },
 }

@@ -101,6 +101,11 @@ impl Scope {
         spelling::nearest(name, candidates, &mut self.budget)
     }
 
+    /// The nearest of other names, at the same budget.
+    pub(super) fn suggest_among<'a>(&mut self, name: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+        spelling::nearest(name, names, &mut self.budget)
+    }
+
     pub(super) fn into_variables(self) -> Vec<Variable> {
         self.entries.into_iter().map(|entry| entry.variable).collect()
     }

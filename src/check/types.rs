@@ -77,9 +77,9 @@ pub(super) fn advice(from: Elementary, to: Elementary) -> String {
     if to == Elementary::Bool {
         "compare it with something to get a BOOL, as in `{x > 0}`".to_owned()
     } else if widens(to, from) {
-        format!("{to} does not hold every {from}; declare what is written as {from}, or what is read as {to}")
+        format!("{to} does not hold every {from}; declare what is written as {from}, or write `{from}_TO_{to}(…)`")
     } else {
-        format!("only widening without loss is implied, and {from} to {to} is not that; declare both alike")
+        format!("only widening without loss is implied, and {from} to {to} is not that; write `{from}_TO_{to}(…)`")
     }
 }
 

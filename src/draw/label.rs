@@ -202,6 +202,23 @@ impl Writer {
                     writer.deeper(|writer| writer.expression(right, precedence + 1));
                 });
             }
+            ExpressionKind::Call { function, arguments } => {
+                self.push(&function.text);
+                self.push("(");
+                for (index, argument) in arguments.iter().enumerate() {
+                    if self.written > self.limit {
+                        self.incomplete = true;
+                        return;
+                    }
+                    self.push(if index > 0 { ", " } else { "" });
+                    if let Some(parameter) = &argument.parameter {
+                        self.push(&parameter.text);
+                        self.push(" := ");
+                    }
+                    self.deeper(|writer| writer.expression(&argument.value, 0));
+                }
+                self.push(")");
+            }
         }
     }
 

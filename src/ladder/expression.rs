@@ -24,6 +24,22 @@ pub enum ExpressionKind {
     Unary(UnaryOperator, Box<Expression>),
     /// Two operands.
     Binary(BinaryOperator, Box<Expression>, Box<Expression>),
+    /// `LIMIT(0, x, 10)`: a call of a function.
+    Call {
+        /// Which.
+        function: Name,
+        /// What it gets, in the order written.
+        arguments: Vec<FunctionArgument>,
+    },
+}
+
+/// One argument of a function.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FunctionArgument {
+    /// The parameter, where the call names it: `G := x`.
+    pub parameter: Option<Name>,
+    /// The value.
+    pub value: Expression,
 }
 
 /// A literal. Whether a number fits its type is for `check` to say.

@@ -27,6 +27,7 @@ impl Lowering<'_> {
                 let operand = self.expression(operand);
                 self.logic.convert(operand, expression.ty)
             }
+            ExpressionKind::Call { function, arguments } => self.function(*function, expression.ty, arguments),
         }
     }
 

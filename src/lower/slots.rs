@@ -262,6 +262,7 @@ impl Used {
                 self.expression(left);
                 self.expression(right);
             }
+            ExpressionKind::Call { arguments, .. } => arguments.iter().for_each(|argument| self.expression(argument)),
         }
     }
 

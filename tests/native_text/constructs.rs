@@ -188,6 +188,31 @@ fn grouped(expression: &Expression) -> String {
             format!("({} {} {})", grouped(left), operator.symbol(), grouped(right))
         }
         ExpressionKind::Literal(literal) => format!("{literal:?}"),
+        ExpressionKind::Call { function, arguments } => {
+            let argument = |argument: &FunctionArgument| match &argument.parameter {
+                Some(parameter) => format!("{}: {}", parameter.text, grouped(&argument.value)),
+                None => grouped(&argument.value),
+            };
+            let arguments: Vec<String> = arguments.iter().map(argument).collect();
+            format!("{}<{}>", function.text, arguments.join(", "))
+        }
+    }
+}
+
+#[test]
+fn names_before_parentheses_call_functions() {
+    let cases = [
+        ("limit(a, b + c, -d)", "limit<a, (b + c), (-d)>"),
+        ("SEL(G := a, IN1 := b, IN0 := c OR d)", "SEL<G: a, IN1: b, IN0: (c OR d)>"),
+        ("SQRT (a) > ABS(MIN(a, b))", "(SQRT<a> > ABS<MIN<a, b>>)"),
+        ("f()", "f<>"),
+        ("`my f`(`a b` := a)", "my f<a b: a>"),
+        ("AND(a, b) and or(c, d) = xor(e, f) MOD MOD(a, b)", "(AND<a, b> AND (or<c, d> = (xor<e, f> MOD MOD<a, b>)))"),
+        ("NOT(a) + `NOT`(b)", "((NOT a) + NOT<b>)"),
+    ];
+    for (text, expected) in cases {
+        let ElementKind::Condition(expression) = element(&format!("{{{text}}}")) else { panic!("{text}") };
+        assert_eq!(grouped(&expression), expected, "{text}");
     }
 }
 

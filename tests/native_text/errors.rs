@@ -76,7 +76,7 @@ fn every_mistake_has_its_code_and_line() {
         ("rung\n{1 := 2}", &[(UnexpectedToken, 2)]),
         ("rung\n{a := }", &[(UnexpectedToken, 2)]),
         ("rung\n{a := 1;}", &[(UnexpectedCharacter, 2)]),
-        ("rung\n{ABS(a)}", &[(UnexpectedToken, 2)]),
+        ("rung\n{ABS(a b)}", &[(UnexpectedToken, 2)]),
         ("rung\n{a[1]}", &[(UnexpectedToken, 2)]),
         ("rung\na[1]", &[(UnexpectedToken, 2)]),
         ("rung\na := 1", &[(UnexpectedToken, 2)]),

@@ -183,13 +183,14 @@ proptest! {
 
 #[test]
 fn nesting_is_read_to_the_limit_and_no_deeper() {
-    let kinds: [(&str, &str, &str); 6] = [
+    let kinds: [(&str, &str, &str); 7] = [
         ("", "[ ", "] "),
         ("", "b(x := [ ", "]) "),
         ("{a := ", "(", ")"),
         ("{a := ", "NOT ", ""),
         ("{a := ", "-", ""),
         ("{a := ", "1 + (", ")"),
+        ("{a := ", "f(a, ", ")"),
     ];
     for (before, open, close) in kinds {
         // The last operand is a level of its own, and so is each sum.
@@ -234,6 +235,8 @@ fn long_chains_of_operators_are_limited_and_long_series_are_not() {
     }
     let series = parse_well(&format!("rung\n{}", "a ".repeat(100_000)));
     assert_eq!(series.rungs[0].circuit.branches[0].elements.len(), 100_000);
+    let arguments = parse_well(&format!("rung\n{{f({}a)}}", "a, ".repeat(100_000)));
+    print_and_check(&arguments);
     let branches = parse_well(&format!("rung\n{}", "| ".repeat(100_000)));
     assert_eq!(branches.rungs[0].circuit.branches.len(), 100_001);
     let members = parse_well(&format!("rung\na{}", ".b".repeat(100_000)));

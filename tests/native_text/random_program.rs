@@ -68,13 +68,19 @@ fn expression() -> impl Strategy<Value = Expression> {
     leaf.prop_map(kind).prop_recursive(5, 24, 2, move |inner| {
         let unary = prop::sample::select(vec![UnaryOperator::Not, UnaryOperator::Negate]);
         let binary = prop::sample::select(BinaryOperator::ALL.to_vec());
+        let operators = prop::sample::select(vec!["NOT", "and", "MOD", "Xor", "OR"]);
+        let function = prop_oneof![name(), operators.prop_map(|operator| Name::new(operator, NOWHERE))];
         prop_oneof![
             (unary, inner.clone()).prop_map(|(operator, operand)| ExpressionKind::Unary(operator, Box::new(operand))),
-            (binary, inner.clone(), inner).prop_map(|(operator, left, right)| ExpressionKind::Binary(
+            (binary, inner.clone(), inner.clone()).prop_map(|(operator, left, right)| ExpressionKind::Binary(
                 operator,
                 Box::new(left),
                 Box::new(right)
             )),
+            (function, vec((option::of(name()), inner), 0..4)).prop_map(|(function, arguments)| {
+                let argument = |(parameter, value)| FunctionArgument { parameter, value };
+                ExpressionKind::Call { function, arguments: arguments.into_iter().map(argument).collect() }
+            }),
         ]
         .prop_map(kind)
     })

@@ -115,6 +115,10 @@ impl Coverage {
                 self.add_expression(left);
                 self.add_expression(right);
             }
+            ExpressionKind::Call { function, arguments } => {
+                self.saw(&format!("function {}", function.text));
+                arguments.iter().for_each(|argument| self.add_expression(&argument.value));
+            }
         }
     }
 

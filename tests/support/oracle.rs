@@ -7,6 +7,7 @@
 mod analog;
 mod block;
 mod expression;
+mod function;
 #[cfg(test)]
 mod tests;
 mod walk;

@@ -6,6 +6,7 @@
 mod circuit;
 mod declaration;
 mod expression;
+mod function;
 mod jump;
 
 use rung::elementary::Elementary;

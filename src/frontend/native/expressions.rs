@@ -5,7 +5,9 @@ use super::literals;
 use super::parser::{Parse, Parser};
 use super::token::{Keyword, Kind};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
+use crate::ladder::{
+    BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Name, Reference, Root, Step, UnaryOperator,
+};
 use crate::source::Span;
 
 /// An expression with the height of its tree, which is bounded as the nesting is: a long sum is as high as it is
@@ -123,12 +125,26 @@ impl Parser<'_> {
             Kind::Literal => self.literal(),
             Kind::Name | Kind::QuotedName | Kind::Address => {
                 let reference = self.reference("a value")?;
-                if matches!(self.token.kind, Kind::LeftParenthesis | Kind::LeftBracket) && self.touching() {
-                    let what = if self.token.kind == Kind::LeftBracket { "arrays" } else { "functions" };
-                    let message = format!("{what} are kept for a later version of the language");
-                    return self.give_up(Diagnostic::new(Code::UnexpectedToken, self.token.span, message));
+                match self.token.kind {
+                    Kind::LeftParenthesis if reference.steps.is_empty() => match reference.root {
+                        Root::Name(function) => return self.call(function),
+                        Root::Address(_) => (ExpressionKind::Read(reference), 1),
+                    },
+                    Kind::LeftBracket if self.touching() => {
+                        let message = "arrays are kept for a later version of the language";
+                        return self.give_up(Diagnostic::new(Code::UnexpectedToken, self.token.span, message));
+                    }
+                    _ => (ExpressionKind::Read(reference), 1),
                 }
-                (ExpressionKind::Read(reference), 1)
+            }
+            Kind::Keyword(Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod) => {
+                let function = Name::new(self.source.slice(span), span);
+                self.advance();
+                if self.token.kind == Kind::LeftParenthesis {
+                    return self.call(function);
+                }
+                let message = format!("`{}` stands between two values, or before both in parentheses", function.text);
+                return self.give_up(Diagnostic::new(Code::UnexpectedToken, span, message));
             }
             _ => {
                 let problem = self.unexpected("a value");
@@ -141,6 +157,54 @@ impl Parser<'_> {
             }
         };
         Ok(Tree { expression: Expression { kind, span: self.since(span.start) }, height })
+    }
+
+    /// The arguments of a function, from the opening parenthesis on.
+    fn call(&mut self, function: Name) -> Parse<Tree> {
+        let (start, open) = (function.span.start, self.token.span);
+        if !self.enter()? {
+            return Ok(Tree { expression: literal(Literal::Bool(false), self.since(start)), height: 1 });
+        }
+        let mut arguments = Vec::new();
+        let mut height = 0;
+        if self.token.kind != Kind::RightParenthesis {
+            loop {
+                let (argument, argument_height) = self.function_argument()?;
+                height = height.max(argument_height);
+                arguments.push(argument);
+                if !self.take(Kind::Comma) {
+                    break;
+                }
+            }
+        }
+        self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
+        self.leave();
+        let span = self.since(start);
+        if height >= MAXIMUM_DEPTH {
+            self.report_too_deep(span);
+            return Ok(Tree { expression: literal(Literal::Bool(false), span), height: 1 });
+        }
+        let kind = ExpressionKind::Call { function, arguments };
+        Ok(Tree { expression: Expression { kind, span }, height: height + 1 })
+    }
+
+    /// One argument and its height.
+    fn function_argument(&mut self) -> Parse<(FunctionArgument, usize)> {
+        let Tree { expression, height } = self.tree()?;
+        if self.token.kind != Kind::Assign {
+            return Ok((FunctionArgument { parameter: None, value: expression }, height));
+        }
+        match expression.kind {
+            ExpressionKind::Read(Reference { root: Root::Name(parameter), steps, .. }) if steps.is_empty() => {
+                self.advance();
+                let Tree { expression: value, height } = self.tree()?;
+                Ok((FunctionArgument { parameter: Some(parameter), value }, height))
+            }
+            _ => {
+                let message = "the name of a parameter stands before `:=`";
+                self.give_up(Diagnostic::new(Code::UnexpectedToken, expression.span, message))
+            }
+        }
     }
 
     /// The literal that is the current token. One that cannot be read is reported, and zero put in its place.

@@ -6,7 +6,7 @@ use rung::check::{Expression, ExpressionKind};
 use rung::elementary::{Elementary, Value};
 use rung::ladder::{BinaryOperator, UnaryOperator};
 
-use super::Oracle;
+use super::{Oracle, function};
 
 impl Oracle<'_> {
     /// The value of an expression now. It changes nothing.
@@ -17,6 +17,10 @@ impl Oracle<'_> {
             ExpressionKind::Unary(operator, operand) => unary(*operator, self.value(operand)),
             ExpressionKind::Binary(operator, left, right) => binary(*operator, self.value(left), self.value(right)),
             ExpressionKind::Widen(operand) => widen(expression.ty, self.value(operand)),
+            ExpressionKind::Call { function, arguments } => {
+                let arguments: Vec<Value> = arguments.iter().map(|argument| self.value(argument)).collect();
+                function::call(*function, expression.ty, &arguments)
+            }
         };
         assert_eq!(value.ty(), expression.ty, "checking gave {expression:?} a type that it does not have");
         value
@@ -108,20 +112,20 @@ fn widen(ty: Elementary, value: Value) -> Value {
     }
 }
 
-fn number(value: Value) -> i128 {
+pub(super) fn number(value: Value) -> i128 {
     value.as_integer().expect("only REAL and LREAL are no integers")
 }
 
 /// The low bits of a number, as many as the type has.
-fn wrapped(ty: Elementary, number: i128) -> Value {
+pub(super) fn wrapped(ty: Elementary, number: i128) -> Value {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "wrapping around is the point")]
     Value::from_bits(ty, number as u64)
 }
 
-fn single(value: f32) -> Value {
+pub(super) fn single(value: f32) -> Value {
     Value::from_bits(Elementary::Real, u64::from(if value.is_nan() { 0x7FC0_0000 } else { value.to_bits() }))
 }
 
-fn double(value: f64) -> Value {
+pub(super) fn double(value: f64) -> Value {
     Value::from_bits(Elementary::Lreal, if value.is_nan() { 0x7FF8_0000_0000_0000 } else { value.to_bits() })
 }

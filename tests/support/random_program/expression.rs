@@ -23,6 +23,9 @@ impl Generator {
         if ty == Elementary::Bool && self.dice.percent(55) {
             return self.comparison(depth);
         }
+        if self.dice.percent(25) {
+            return self.function(ty, depth);
+        }
         let operators: &[BinaryOperator] = if ty.is_bit_string() {
             &[BinaryOperator::And, BinaryOperator::Or, BinaryOperator::Xor]
         } else if ty.is_integer() {
@@ -77,7 +80,7 @@ impl Generator {
     }
 
     /// An expression whose type shows without what stands around it, and which is not constant where that can be.
-    fn anchored(&mut self, ty: Elementary, depth: usize) -> Expression {
+    pub(super) fn anchored(&mut self, ty: Elementary, depth: usize) -> Expression {
         if depth > 0 && self.dice.percent(50) && self.place(ty, Purpose::ReadVariable).is_some() {
             return self.operation(ty, depth);
         }

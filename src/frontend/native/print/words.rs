@@ -98,7 +98,26 @@ fn push_expression(text: &mut String, expression: &Expression) {
             text.push(' ');
             push_operand(text, right, precedence(right) <= operator.precedence());
         }
+        ExpressionKind::Call { function, arguments } => {
+            text.push_str(&function_name(&function.text));
+            text.push('(');
+            for (index, argument) in arguments.iter().enumerate() {
+                text.push_str(if index == 0 { "" } else { ", " });
+                if let Some(parameter) = &argument.parameter {
+                    text.push_str(&name(&parameter.text));
+                    text.push_str(" := ");
+                }
+                push_expression(text, &argument.value);
+            }
+            text.push(')');
+        }
     }
+}
+
+/// Operators that are functions too need no back quotes, but NOT, which before a parenthesis is always the operator.
+fn function_name(text: &str) -> Cow<'_, str> {
+    let operator = ["AND", "OR", "XOR", "MOD"].iter().any(|word| text.eq_ignore_ascii_case(word));
+    if operator { Cow::Borrowed(text) } else { name(text) }
 }
 
 fn push_operand(text: &mut String, operand: &Expression, parentheses: bool) {
