@@ -9,7 +9,7 @@ use rung::source::Span;
 
 const NOWHERE: Span = Span { start: 0, end: 0 };
 
-fn name() -> impl Strategy<Value = Name> {
+fn name() -> BoxedStrategy<Name> {
     prop_oneof![
         4 => "[a-zA-Z_][a-zA-Z0-9_]{0,8}",
         1 => "[a-zA-Z_]{20,40}",
@@ -18,30 +18,26 @@ fn name() -> impl Strategy<Value = Name> {
         1 => "[^`\n\r\0]{1,6}",
     ]
     .prop_map(|text| Name::new(text, NOWHERE))
+    .boxed()
 }
 
-fn address() -> impl Strategy<Value = Address> {
+fn address() -> BoxedStrategy<Address> {
     let area = prop::sample::select(vec![Area::Input, Area::Output, Area::Memory]);
     let width = prop::sample::select(vec![Width::Bit, Width::Byte, Width::Word, Width::Double, Width::Long]);
-    (area, width, vec(any::<u32>(), 1..4)).prop_map(|(area, width, numbers)| Address {
-        area,
-        width,
-        numbers,
-        span: NOWHERE,
-    })
+    (area, width, vec(any::<u32>(), 1..4))
+        .prop_map(|(area, width, numbers)| Address { area, width, numbers, span: NOWHERE })
+        .boxed()
 }
 
-fn reference() -> impl Strategy<Value = Reference> {
+fn reference() -> BoxedStrategy<Reference> {
     let root = prop_oneof![4 => name().prop_map(Root::Name), 1 => address().prop_map(Root::Address)];
     let step = prop_oneof![name().prop_map(Step::Member), any::<u8>().prop_map(|bit| Step::Bit(bit, NOWHERE))];
-    (root, prop_oneof![3 => Just(Vec::new()), 1 => vec(step, 1..3)]).prop_map(|(root, steps)| Reference {
-        root,
-        steps,
-        span: NOWHERE,
-    })
+    (root, prop_oneof![3 => Just(Vec::new()), 1 => vec(step, 1..3)])
+        .prop_map(|(root, steps)| Reference { root, steps, span: NOWHERE })
+        .boxed()
 }
 
-fn literal() -> impl Strategy<Value = Literal> {
+fn literal() -> BoxedStrategy<Literal> {
     let whole = Elementary::ALL.into_iter().filter(|ty| !ty.is_real() && *ty != Elementary::Time).collect::<Vec<_>>();
     let integer = (
         prop_oneof![any::<u128>(), (0..100u128)],
@@ -60,33 +56,37 @@ fn literal() -> impl Strategy<Value = Literal> {
         any::<i64>().prop_map(Literal::Time),
         (-100_000i64..100_000).prop_map(|milliseconds| Literal::Time(milliseconds * 1_000_000)),
     ]
+    .boxed()
 }
 
-fn expression() -> impl Strategy<Value = Expression> {
+fn expression() -> BoxedStrategy<Expression> {
     let kind = |kind| Expression { kind, span: NOWHERE };
     let leaf = prop_oneof![literal().prop_map(ExpressionKind::Literal), reference().prop_map(ExpressionKind::Read),];
-    leaf.prop_map(kind).prop_recursive(5, 24, 2, move |inner| {
-        let unary = prop::sample::select(vec![UnaryOperator::Not, UnaryOperator::Negate]);
-        let binary = prop::sample::select(BinaryOperator::ALL.to_vec());
-        let operators = prop::sample::select(vec!["NOT", "and", "MOD", "Xor", "OR"]);
-        let function = prop_oneof![name(), operators.prop_map(|operator| Name::new(operator, NOWHERE))];
-        prop_oneof![
-            (unary, inner.clone()).prop_map(|(operator, operand)| ExpressionKind::Unary(operator, Box::new(operand))),
-            (binary, inner.clone(), inner.clone()).prop_map(|(operator, left, right)| ExpressionKind::Binary(
-                operator,
-                Box::new(left),
-                Box::new(right)
-            )),
-            (function, vec((option::of(name()), inner), 0..4)).prop_map(|(function, arguments)| {
-                let argument = |(parameter, value)| FunctionArgument { parameter, value };
-                ExpressionKind::Call { function, arguments: arguments.into_iter().map(argument).collect() }
-            }),
-        ]
-        .prop_map(kind)
-    })
+    leaf.prop_map(kind)
+        .prop_recursive(5, 24, 2, move |inner| {
+            let unary = prop::sample::select(vec![UnaryOperator::Not, UnaryOperator::Negate]);
+            let binary = prop::sample::select(BinaryOperator::ALL.to_vec());
+            let operators = prop::sample::select(vec!["NOT", "and", "MOD", "Xor", "OR"]);
+            let function = prop_oneof![name(), operators.prop_map(|operator| Name::new(operator, NOWHERE))];
+            prop_oneof![
+                (unary, inner.clone())
+                    .prop_map(|(operator, operand)| ExpressionKind::Unary(operator, Box::new(operand))),
+                (binary, inner.clone(), inner.clone()).prop_map(|(operator, left, right)| ExpressionKind::Binary(
+                    operator,
+                    Box::new(left),
+                    Box::new(right)
+                )),
+                (function, vec((option::of(name()), inner), 0..4)).prop_map(|(function, arguments)| {
+                    let argument = |(parameter, value)| FunctionArgument { parameter, value };
+                    ExpressionKind::Call { function, arguments: arguments.into_iter().map(argument).collect() }
+                }),
+            ]
+            .prop_map(kind)
+        })
+        .boxed()
 }
 
-fn simple_element() -> impl Strategy<Value = ElementKind> {
+fn simple_element() -> BoxedStrategy<ElementKind> {
     use {CoilKind as Coil, ContactKind as Contact};
     let contact = vec![Contact::Open, Contact::Closed, Contact::Rising, Contact::Falling];
     let coil = vec![Coil::Plain, Coil::Negated, Coil::Set, Coil::Reset, Coil::Rising, Coil::Falling];
@@ -105,6 +105,7 @@ fn simple_element() -> impl Strategy<Value = ElementKind> {
         1 => name().prop_map(|target| ElementKind::Jump { target }),
         1 => Just(ElementKind::Return),
     ]
+    .boxed()
 }
 
 fn circuit_of(element: impl Strategy<Value = ElementKind> + Clone) -> impl Strategy<Value = Circuit> {
@@ -133,7 +134,7 @@ fn block(circuit: impl Strategy<Value = Circuit>) -> impl Strategy<Value = Eleme
     )
 }
 
-fn circuit() -> impl Strategy<Value = Circuit> {
+fn circuit() -> BoxedStrategy<Circuit> {
     let element = simple_element().prop_recursive(4, 24, 4, |inner| {
         let circuit = circuit_of(inner.clone()).boxed();
         prop_oneof![
@@ -142,14 +143,14 @@ fn circuit() -> impl Strategy<Value = Circuit> {
             1 => block(circuit),
         ]
     });
-    circuit_of(element)
+    circuit_of(element).boxed()
 }
 
-fn variable() -> impl Strategy<Value = Variable> {
+fn variable() -> BoxedStrategy<Variable> {
     use VariableClass::{Constant, Input, Memory, Output};
     let class = prop::sample::select(vec![Input, Output, Memory, Constant]);
-    (class, name(), option::of(name()), option::of(address()), option::of(expression()), any::<bool>()).prop_map(
-        |(class, name, type_name, address, initial, retain)| Variable {
+    (class, name(), option::of(name()), option::of(address()), option::of(expression()), any::<bool>())
+        .prop_map(|(class, name, type_name, address, initial, retain)| Variable {
             class,
             name,
             type_name,
@@ -157,13 +158,14 @@ fn variable() -> impl Strategy<Value = Variable> {
             initial,
             retain,
             span: NOWHERE,
-        },
-    )
+        })
+        .boxed()
 }
 
-fn rung() -> impl Strategy<Value = Rung> {
+fn rung() -> BoxedStrategy<Rung> {
     (option::of(name()), option::of("\\PC{0,12}|[\t\r\n\"$\u{1b}a]{0,8}"), any::<bool>(), circuit())
         .prop_map(|(name, title, enabled, circuit)| Rung { name, title, enabled, circuit, span: NOWHERE })
+        .boxed()
 }
 
 /// Programs without comments, which no front end but one with true spans can place.
