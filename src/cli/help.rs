@@ -10,6 +10,7 @@ use super::{Failure, print};
 use crate::check::spelling::{Budget, nearest};
 use crate::diagnostic::Code;
 use crate::elementary::Elementary;
+use crate::ladder::functions::Function;
 
 /// Prints this, the help of a subcommand, or what the manual says of an element
 #[derive(Debug, clap::Args)]
@@ -44,6 +45,7 @@ const PAGES: &[Page] = pages! {
         "( )" "()" "(/)" "(s)" "(r)" "(p)" "(n)";
     "branches": "branch" "branches" "parallel" "series" "node" "nodes" "bridge" "[ ]" "[]" "[|]" ">x>";
     "expressions": "expression" "expressions" "condition" "assignment" "compare" "{ }" "{}" ":=";
+    "../functions": "function" "functions";
     "blocks": "block" "blocks" "function block" "en" "eno" "pin" "instance";
     "ton": "ton" "on-delay";
     "tof": "tof" "off-delay";
@@ -65,11 +67,13 @@ const PAGES: &[Page] = pages! {
 };
 
 impl Page {
-    /// The page that a topic names, in any case; a block that is there for several types is named with or without one.
+    /// The page that a topic names, in any case; a block that is there for several types is named with or
+    /// without one, and a function by its name.
     fn of(topic: &str) -> Option<&'static Self> {
         let named = |name: &str| PAGES.iter().find(|page| page.names.contains(&name));
         let topic = topic.to_lowercase();
-        named(&topic).or_else(|| {
+        let function = || Function::from_name(&topic).and_then(|_| named("function"));
+        named(&topic).or_else(function).or_else(|| {
             let (block, ty) = topic.rsplit_once('_')?;
             Elementary::from_name(ty).and_then(|_| named(block))
         })
