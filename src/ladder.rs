@@ -17,6 +17,8 @@ pub use expression::{
     BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Reference, Root, Step, UnaryOperator,
 };
 
+use std::fmt;
+
 use crate::source::Span;
 
 /// A name with its spelling as written. Names are compared without regard to case.
@@ -162,6 +164,29 @@ pub struct Address {
     pub numbers: Vec<u32>,
     /// Where it is written.
     pub span: Span,
+}
+
+/// The canonical spelling, `%IX0.3`: a bit's address always has its `X`.
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let area = match self.area {
+            Area::Input => 'I',
+            Area::Output => 'Q',
+            Area::Memory => 'M',
+        };
+        let width = match self.width {
+            Width::Bit => 'X',
+            Width::Byte => 'B',
+            Width::Word => 'W',
+            Width::Double => 'D',
+            Width::Long => 'L',
+        };
+        write!(f, "%{area}{width}")?;
+        for (place, number) in self.numbers.iter().enumerate() {
+            write!(f, "{}{number}", if place == 0 { "" } else { "." })?;
+        }
+        Ok(())
+    }
 }
 
 /// One rung.

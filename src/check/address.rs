@@ -5,8 +5,6 @@
 //! lies in `%QB0`, and `%QB0` in `%QW0`. Addresses with more numbers name what only the I/O system knows; they are
 //! the same if they are written the same, and overlap nothing.
 
-use std::fmt::Write;
-
 use super::Checker;
 use super::model::VariableId;
 use crate::diagnostic::{Code, Diagnostic};
@@ -55,35 +53,12 @@ pub(super) fn class_of(area: Area) -> VariableClass {
     }
 }
 
-/// The canonical spelling, as `%IX0.3`.
-pub(super) fn spell(address: &Address) -> String {
-    let area = match address.area {
-        Area::Input => 'I',
-        Area::Output => 'Q',
-        Area::Memory => 'M',
-    };
-    let width = match address.width {
-        Width::Bit => 'X',
-        Width::Byte => 'B',
-        Width::Word => 'W',
-        Width::Double => 'D',
-        Width::Long => 'L',
-    };
-    let mut text = format!("%{area}{width}");
-    for (place, number) in address.numbers.iter().enumerate() {
-        let dot = if place == 0 { "" } else { "." };
-        // Writing to a string does not fail.
-        let _ = write!(text, "{dot}{number}");
-    }
-    text
-}
-
 impl Checker<'_> {
     /// The storage of an address, or a report that there is none such.
     pub(super) fn extent(&mut self, address: &Address) -> Option<Extent> {
         let extent = Extent::of(address);
         if extent.is_none() {
-            let message = format!("`{}` names a bit that a byte has not", spell(address));
+            let message = format!("`{}` names a bit that a byte has not", address);
             let problem = Diagnostic::new(Code::OutOfRange, address.span, message);
             self.report.push(problem.hint("the bits of a byte are 0 to 7"));
         }
@@ -118,14 +93,10 @@ impl Checker<'_> {
         let (Some(a), Some(b)) = (&a.address, &b.address) else { return };
         // The later one in the source is the intruder.
         let (first, second) = if a.span <= b.span { (a, b) } else { (b, a) };
-        let message = format!("`{}` overlaps `{}`", spell(second), spell(first));
+        let message = format!("`{}` overlaps `{}`", second, first);
         let problem = Diagnostic::new(Code::AddressConflict, second.span, message)
             .related(first.span, "the other address")
-            .hint(format!(
-                "two addresses may share storage only when their widths are equal; `{}` holds `{}`",
-                spell(a),
-                spell(b)
-            ));
+            .hint(format!("two addresses may share storage only when their widths are equal; `{}` holds `{}`", a, b));
         self.report.push(problem);
     }
 }

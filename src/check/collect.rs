@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 
 use super::Checker;
-use super::address::{class_of, direct_type, spell};
+use super::address::{class_of, direct_type};
 use super::model::{Type, Variable};
 use super::scope::State;
 use crate::diagnostic::{Code, Diagnostic};
@@ -117,7 +117,8 @@ impl Checker<'_> {
             && !self.scope.addresses.contains_key(&extent)
         {
             let ty = Type::Elementary(direct_type(address.width));
-            let variable = variable(spell(address), class_of(address.area), ty, Some(address.clone()), address.span);
+            let variable =
+                variable(address.to_string(), class_of(address.area), ty, Some(address.clone()), address.span);
             let id = self.scope.add_nameless(variable, State::Known);
             self.scope.addresses.insert(extent, id);
         }

@@ -1,7 +1,7 @@
 //! Declarations: names, types, classes and addresses first, so that initial values may name what stands anywhere; then
 //! the initial values in order, so that a constant can use only those before it and never itself.
 
-use super::address::{class_of, spell};
+use super::address::class_of;
 use super::model::{Type, Variable, VariableId};
 use super::scope::State;
 use super::spelling::{self, Budget};
@@ -109,7 +109,7 @@ impl Checker<'_> {
             (VariableClass::Constant, _) => "a constant takes no storage; leave the address out",
         };
         let what = types::with_article(class_name(declared.class));
-        let message = format!("{what} cannot stand at `{}`", spell(address));
+        let message = format!("{what} cannot stand at `{}`", address);
         self.report.push(Diagnostic::new(Code::AddressConflict, address.span, message).hint(hint));
         declared.class
     }
@@ -134,8 +134,7 @@ impl Checker<'_> {
 
     fn place_at(&mut self, id: VariableId, address: &Address, ty: Elementary) {
         if address.width.bits() != ty.bits() {
-            let message =
-                format!("`{}` is {} wide, and {ty} {}", spell(address), bits(address.width.bits()), bits(ty.bits()));
+            let message = format!("`{}` is {} wide, and {ty} {}", address, bits(address.width.bits()), bits(ty.bits()));
             self.report.push(Diagnostic::new(Code::TypeMismatch, address.span, message));
         }
         let Some(extent) = self.extent(address) else { return };

@@ -6,8 +6,8 @@
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::ladder::{
-    Address, Area, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, ElementKind, Expression,
-    ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Width, Wire,
+    BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, ElementKind, Expression, ExpressionKind,
+    Literal, Reference, Root, Step, UnaryOperator, Wire,
 };
 
 /// What stands for that which was cut.
@@ -101,24 +101,6 @@ pub(super) fn assignment(target: &Reference, value: &Expression, limit: usize) -
     cut_end(&format!("{target} := {}", expression(value, rest)), limit)
 }
 
-/// An address in its own notation.
-pub(super) fn address(address: &Address) -> String {
-    let area = match address.area {
-        Area::Input => 'I',
-        Area::Output => 'Q',
-        Area::Memory => 'M',
-    };
-    let width = match address.width {
-        Width::Bit => 'X',
-        Width::Byte => 'B',
-        Width::Word => 'W',
-        Width::Double => 'D',
-        Width::Long => 'L',
-    };
-    let numbers: Vec<String> = address.numbers.iter().map(u32::to_string).collect();
-    format!("%{area}{width}{}", numbers.join("."))
-}
-
 /// A circuit in native text without its outer brackets where it needs none; `None` where it does not fit.
 pub(super) fn circuit(circuit: &Circuit, limit: usize) -> Option<String> {
     let mut writer = Writer::new(limit);
@@ -170,7 +152,7 @@ impl Writer {
     fn reference(&mut self, reference: &Reference) {
         match &reference.root {
             Root::Name(name) => self.push(&name.text),
-            Root::Address(at) => self.push(&address(at)),
+            Root::Address(at) => self.push(&at.to_string()),
         }
         for step in &reference.steps {
             self.push(".");

@@ -207,7 +207,7 @@ fn row(variable: &Variable) -> [String; 6] {
         class.to_owned(),
         label::cut_name(&variable.name.text, WIDEST_COLUMN),
         variable.type_name.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::cut_name(&ty.text, WIDEST_COLUMN)),
-        variable.address.as_ref().map_or_else(String::new, label::address),
+        variable.address.as_ref().map_or_else(String::new, ToString::to_string),
         variable.initial.as_ref().map_or_else(String::new, |value| label::expression(value, WIDEST_COLUMN)),
         if variable.retain { "retain" } else { "" }.to_owned(),
     ]

@@ -91,7 +91,7 @@ fn clauses(variable: &Variable) -> String {
     }
     if let Some(address) = &variable.address {
         text.push_str(" at ");
-        text.push_str(&words::address(address));
+        text.push_str(&address.to_string());
     }
     if let Some(initial) = &variable.initial {
         text.push_str(" := ");

@@ -6,8 +6,8 @@ use std::borrow::Cow;
 use super::super::literals::UNITS;
 use super::super::token::is_plain_name;
 use crate::ladder::{
-    Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind,
-    Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Width, Wire,
+    Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression,
+    ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Wire,
 };
 
 /// A name, in back quotes if it needs them.
@@ -37,29 +37,11 @@ pub(super) fn title(text: &str) -> String {
     quoted
 }
 
-/// An address; a bit's address always with its `X`.
-pub(super) fn address(address: &Address) -> String {
-    let area = match address.area {
-        Area::Input => 'I',
-        Area::Output => 'Q',
-        Area::Memory => 'M',
-    };
-    let width = match address.width {
-        Width::Bit => 'X',
-        Width::Byte => 'B',
-        Width::Word => 'W',
-        Width::Double => 'D',
-        Width::Long => 'L',
-    };
-    let numbers: Vec<String> = address.numbers.iter().map(u32::to_string).collect();
-    format!("%{area}{width}{}", numbers.join("."))
-}
-
 pub(super) fn reference(reference: &Reference) -> String {
     let (mut text, mut dot) = match &reference.root {
         Root::Name(root) => (name(&root.text).into_owned(), "."),
         // Touching, the bit would be one more number of the address.
-        Root::Address(root) => (address(root), " ."),
+        Root::Address(root) => (root.to_string(), " ."),
     };
     for step in &reference.steps {
         text.push_str(dot);
