@@ -20,8 +20,7 @@ use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{
     Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
-    Literal, Name, Origin, Program, Reference, Root, Rung, Variable, VariableClass, Wire,
-};
+    Literal, Name, Origin, Program, Reference, Root, Rung, Variable, VariableClass, Wire, TypeReference};
 use crate::source::Span;
 
 /// The most contacts that a program may have on average: beyond it, its text would be too large to be a source.
@@ -124,13 +123,8 @@ pub fn generate(options: &Options) -> Result<Program, OptionsError> {
         let class = if drives_output(rung) { VariableClass::Output } else { VariableClass::Memory };
         variable(class, coil_name(rung))
     });
-    Ok(Program {
-        origin: Origin::Native,
-        name: name(format!("synthetic_{rungs}")),
-        variables: inputs.chain(coils).collect(),
-        rungs: (0..rungs).map(|rung| generator.rung(rung)).collect(),
-        comments: Vec::new(),
-    })
+    let rungs_of_it = (0..rungs).map(|rung| generator.rung(rung)).collect();
+    Ok(Program::of_one(Origin::Native, name(format!("synthetic_{rungs}")), inputs.chain(coils).collect(), rungs_of_it))
 }
 
 struct Generator {
@@ -207,7 +201,7 @@ impl Generator {
         let preset = i64::from(1 + self.below(200)) * 10_000_000;
         let wire = Wire::Value(expression(ExpressionKind::Literal(Literal::Time(preset))));
         element(ElementKind::Block(BlockCall {
-            instance: name(format!("t{rung}")),
+            instance: reference(format!("t{rung}")),
             type_name: Some(name(StandardBlock::Ton.name())),
             arguments: vec![Argument { pin: name("PT"), wire, span: NOWHERE }],
             power_output: None,
@@ -235,7 +229,7 @@ fn variable(class: VariableClass, text: String) -> Variable {
     Variable {
         class,
         name: name(text),
-        type_name: (class == VariableClass::Memory).then(|| name(Elementary::Bool.name())),
+        ty: (class == VariableClass::Memory).then(|| TypeReference::of_name(name(Elementary::Bool.name()))),
         address: None,
         initial: None,
         retain: false,

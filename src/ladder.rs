@@ -1,5 +1,6 @@
-//! A ladder program as it was drawn: declarations, rungs, and in each rung the network of contacts, coils and
-//! blocks, everything with its span.
+//! A ladder program as it was drawn: types, global variables, tasks and units (programs, function blocks, functions),
+//! in each unit its declarations and rungs, and in each rung the network of contacts, coils and blocks, everything
+//! with its span.
 //!
 //! This is what front ends make, `fmt` and `show` print, and `check` resolves. It holds names, not meanings:
 //! nothing here must look a name up, fold a constant or know how an element computes.
@@ -9,13 +10,20 @@
 //! list of branches. Within a rung the elements run depth first, left to right and top to bottom, exactly in the
 //! order of the tree.
 
+mod configuration;
 mod expression;
 pub mod functions;
 pub mod library;
+mod statement;
+mod types;
 
+pub use configuration::{ProgramInstance, Registers, Setting, Task};
 pub use expression::{
-    BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Reference, Root, Step, UnaryOperator,
+    ArrayItem, BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, MemberValue, Reference, Root,
+    Step, UnaryOperator,
 };
+pub use statement::{CaseBranch, CaseLabel, ConditionalBranch, Statement, StatementKind};
+pub use types::{Dimension, Field, TypeDeclaration, TypeKind, TypeReference};
 
 use std::fmt;
 
@@ -56,19 +64,87 @@ pub enum Origin {
     Imported,
 }
 
-/// One ladder program.
+/// One source: everything that it declares.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Program {
     /// What it was read from.
     pub origin: Origin,
+    /// Its name: of the only program, or of the file.
+    pub name: Name,
+    /// The types that it declares, in order.
+    pub types: Vec<TypeDeclaration>,
+    /// The variables that all units see, in order. Each is memory or a constant.
+    pub globals: Vec<Variable>,
+    /// The size of the register machine, where it is said.
+    pub registers: Option<Registers>,
+    /// The tasks, in order.
+    pub tasks: Vec<Task>,
+    /// Programs, function blocks and functions, in order.
+    pub units: Vec<Unit>,
+    /// The program instances that are named one by one. A program that none names runs as one instance of its own name.
+    pub instances: Vec<ProgramInstance>,
+    /// Every comment of the source, in order of place; printers put them back beside what they stood beside.
+    pub comments: Vec<Comment>,
+}
+
+impl Program {
+    /// A source that declares one program and nothing else.
+    pub fn of_one(origin: Origin, name: Name, variables: Vec<Variable>, rungs: Vec<Rung>) -> Self {
+        let unit = Unit { kind: UnitKind::Program { task: None }, name: name.clone(), variables, rungs, span: name.span };
+        Self { units: vec![unit], ..Self::empty(origin, name) }
+    }
+
+    /// A source that declares nothing.
+    pub fn empty(origin: Origin, name: Name) -> Self {
+        Self {
+            origin,
+            name,
+            types: Vec::new(),
+            globals: Vec::new(),
+            registers: None,
+            tasks: Vec::new(),
+            units: Vec::new(),
+            instances: Vec::new(),
+            comments: Vec::new(),
+        }
+    }
+
+    /// The rungs of all units, in order.
+    pub fn rungs(&self) -> impl Iterator<Item = &Rung> {
+        self.units.iter().flat_map(|unit| &unit.rungs)
+    }
+}
+
+/// A program organisation unit (IEC 61131-3, 6.6).
+#[derive(Clone, PartialEq, Debug)]
+pub struct Unit {
+    /// What it is.
+    pub kind: UnitKind,
     /// Its name.
     pub name: Name,
     /// The declared variables and block instances, in order.
     pub variables: Vec<Variable>,
-    /// The rungs, in order of execution.
+    /// The rungs, in order of execution. What is written in structured text is a rung for each statement.
     pub rungs: Vec<Rung>,
-    /// Every comment of the source, in order of place; printers put them back beside what they stood beside.
-    pub comments: Vec<Comment>,
+    /// Its first line.
+    pub span: Span,
+}
+
+/// What a unit is.
+#[derive(Clone, PartialEq, Debug)]
+pub enum UnitKind {
+    /// It runs by itself, in a task or in every round of scans.
+    Program {
+        /// The task that it runs in.
+        task: Option<Name>,
+    },
+    /// A type of instances, each with a memory of its own.
+    FunctionBlock,
+    /// Computes and remembers nothing. The result is written to its own name.
+    Function {
+        /// The type of the result; without one there is none.
+        result: Option<TypeReference>,
+    },
 }
 
 /// A comment of the source.
@@ -85,14 +161,18 @@ pub struct Comment {
 /// What a declaration declares.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum VariableClass {
-    /// Copied in before each scan.
+    /// Of a program: copied in before each scan. Of a block or function: what a call gives it.
     Input,
-    /// Copied out after each scan.
+    /// Of a program: copied out after each scan. Of a block or function: what a call takes from it.
     Output,
     /// Neither: memory, or a block instance.
     Memory,
     /// Never written after start.
     Constant,
+    /// Of a function block or function: the caller's variable itself, for as long as the call lasts (VAR_IN_OUT).
+    InOut,
+    /// Holds its initial value again whenever the unit starts to run (VAR_TEMP).
+    Temporary,
 }
 
 /// A declared variable or block instance.
@@ -102,8 +182,8 @@ pub struct Variable {
     pub class: VariableClass,
     /// Its name.
     pub name: Name,
-    /// The name of its type; BOOL where it is left out.
-    pub type_name: Option<Name>,
+    /// Its type; BOOL where it is left out.
+    pub ty: Option<TypeReference>,
     /// The IEC address that it stands at.
     pub address: Option<Address>,
     /// The value that it starts with.
@@ -253,7 +333,7 @@ pub enum ElementKind {
         /// To where.
         target: Reference,
     },
-    /// Calls a function block.
+    /// Calls a function block or, in a box of its own, a function.
     Block(BlockCall),
     /// Braces around a BOOL expression: a contact that conducts while it is true.
     Condition(Expression),
@@ -264,6 +344,8 @@ pub enum ElementKind {
         /// The value.
         value: Expression,
     },
+    /// Structured text in braces: it executes while there is power, and passes its power on.
+    Statements(Vec<Statement>),
     /// Branches in parallel.
     Parallel(Circuit),
     /// With power, execution goes on at once at a later rung; nothing between is executed. The last of its branch.
@@ -305,14 +387,14 @@ pub enum CoilKind {
     Falling,
 }
 
-/// A call of a function block.
+/// A call of a function block or function.
 #[derive(Clone, PartialEq, Debug)]
 pub struct BlockCall {
-    /// The instance.
-    pub instance: Name,
+    /// The instance; or the name of a function, where nothing is declared under it.
+    pub instance: Reference,
     /// The type, where the call names it; an instance declared elsewhere needs none.
     pub type_name: Option<Name>,
-    /// What is wired to the pins, in the order written.
+    /// What is wired to the pins, in the order written. `EN` and `ENO` are pins of every box.
     pub arguments: Vec<Argument>,
     /// The BOOL output that gives the power on the right, where one is chosen.
     pub power_output: Option<Name>,

@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&format!(
             "{}: {} rungs, {} errors, {} warnings\n",
             loaded.source.name(),
-            loaded.program.rungs.len(),
+            loaded.program.rungs().count(),
             count(Severity::Error),
             count(Severity::Warning)
         ))?;

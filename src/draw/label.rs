@@ -155,10 +155,14 @@ impl Writer {
             Root::Address(at) => self.push(&at.to_string()),
         }
         for step in &reference.steps {
-            self.push(".");
             match step {
-                Step::Member(name) => self.push(&name.text),
-                Step::Bit(bit, _) => self.push(&bit.to_string()),
+                Step::Member(name) => self.push(&format!(".{}", name.text)),
+                Step::Bit(bit, _) => self.push(&format!(".{bit}")),
+                Step::Index(indices, _) => {
+                    self.push("[");
+                    self.list(indices, |writer, index| writer.expression(index, 0));
+                    self.push("]");
+                }
             }
         }
     }
@@ -187,20 +191,47 @@ impl Writer {
             ExpressionKind::Call { function, arguments } => {
                 self.push(&function.text);
                 self.push("(");
-                for (index, argument) in arguments.iter().enumerate() {
-                    if self.written > self.limit {
-                        self.incomplete = true;
-                        return;
-                    }
-                    self.push(if index > 0 { ", " } else { "" });
+                self.list(arguments, |writer, argument| {
                     if let Some(parameter) = &argument.parameter {
-                        self.push(&parameter.text);
-                        self.push(" := ");
+                        writer.push(&parameter.text);
+                        writer.push(" := ");
                     }
-                    self.deeper(|writer| writer.expression(&argument.value, 0));
-                }
+                    writer.expression(&argument.value, 0);
+                });
                 self.push(")");
             }
+            ExpressionKind::Array(items) => {
+                self.push("[");
+                self.list(items, |writer, item| {
+                    if let Some(repeat) = &item.repeat {
+                        writer.expression(repeat, 0);
+                        writer.push("(");
+                    }
+                    item.value.iter().for_each(|value| writer.expression(value, 0));
+                    writer.push(if item.repeat.is_some() { ")" } else { "" });
+                });
+                self.push("]");
+            }
+            ExpressionKind::Structure(members) => {
+                self.push("(");
+                self.list(members, |writer, member| {
+                    writer.push(&format!("{} := ", member.member.text));
+                    writer.expression(&member.value, 0);
+                });
+                self.push(")");
+            }
+        }
+    }
+
+    /// Writes items with commas between them, each one level deeper, as long as there is room.
+    fn list<T>(&mut self, items: &[T], mut write: impl FnMut(&mut Self, &T)) {
+        for (index, item) in items.iter().enumerate() {
+            if self.written > self.limit {
+                self.incomplete = true;
+                return;
+            }
+            self.push(if index > 0 { ", " } else { "" });
+            self.deeper(|writer| write(writer, item));
         }
     }
 
@@ -287,6 +318,7 @@ impl Writer {
                 self.push("}");
             }
             ElementKind::Parallel(inner) => self.circuit(inner),
+            ElementKind::Statements(_) => self.push("{…}"),
             ElementKind::Block(call) => self.block(call),
             ElementKind::Jump { target } => self.push(&format!(">> {}", target.text)),
             ElementKind::Return => self.push(">> return"),
@@ -294,7 +326,7 @@ impl Writer {
     }
 
     fn block(&mut self, call: &BlockCall) {
-        self.push(&call.instance.text);
+        self.reference(&call.instance);
         if let Some(ty) = &call.type_name {
             self.push(&format!(":{}", ty.text));
         }
@@ -348,6 +380,7 @@ fn literal(literal: &Literal) -> String {
             }
         }
         Literal::Time(nanoseconds) => time(*nanoseconds),
+        Literal::Enumerated { ty, value } => format!("{}#{}", ty.text, value.text),
     }
 }
 

@@ -151,6 +151,7 @@ impl Builder<'_> {
                 Symbol::boxed(label::assignment(target, value, limits.expression), true)
             }
             ElementKind::Block(call) => self.block(call),
+            ElementKind::Statements(_) => Symbol::boxed("…".to_owned(), true),
             ElementKind::Jump { target } => Symbol::jump(&target.text, limits),
             ElementKind::Return => Symbol::jump("return", limits),
             ElementKind::Parallel(_) if self.depth >= MAXIMUM_DEPTH => Symbol::boxed("…".to_owned(), false),
@@ -166,7 +167,7 @@ impl Builder<'_> {
                 labels.push(match written {
                     Some(text) => text,
                     None if self.depth >= MAXIMUM_DEPTH => "…".to_owned(),
-                    None => self.pin_circuit(circuit, &format!("{}.{}", call.instance.text, argument.pin.text)),
+                    None => self.pin_circuit(circuit, &format!("{}.{}", label::reference(&call.instance, self.limits.pin), argument.pin.text)),
                 });
             }
         }

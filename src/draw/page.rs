@@ -53,9 +53,10 @@ pub(super) struct RungPicture {
 impl Page {
     /// Lays out a program for so many columns.
     pub(super) fn of(program: &Program, width: usize) -> Self {
+        let unit = &program.units[0];
         let types = InstanceTypes::of(program);
         let limits = Limits::within(width.saturating_sub(MARGINS));
-        let grids: Vec<Vec<Grid>> = program
+        let grids: Vec<Vec<Grid>> = unit
             .rungs
             .iter()
             .map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(|net| Grid::new(net, width)).collect())
@@ -66,7 +67,7 @@ impl Page {
         // Prose is not drawn out far beyond the rungs.
         let prose = columns.max(READABLE).min(width);
         let mut comments = Comments { rest: &program.comments, from: declarations_end(program) };
-        let rungs = program
+        let rungs = unit
             .rungs
             .iter()
             .zip(grids)
@@ -79,7 +80,7 @@ impl Page {
             })
             .collect();
         let title = label::cut_end(&format!("program {}", program.name.text), width);
-        Self { title, declarations: Table::of(&program.variables, width), rungs }
+        Self { title, declarations: Table::of(&unit.variables, width), rungs }
     }
 }
 
@@ -100,8 +101,9 @@ fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
 
 /// Where the declarations end, as far as they stand before the first rung.
 fn declarations_end(program: &Program) -> u32 {
-    let first = program.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
-    let ends = program.variables.iter().map(|variable| variable.span.end).chain([program.name.span.end]);
+    let unit = &program.units[0];
+    let first = unit.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
+    let ends = unit.variables.iter().map(|variable| variable.span.end).chain([program.name.span.end]);
     ends.filter(|end| *end <= first).max().unwrap_or(0)
 }
 
@@ -202,11 +204,13 @@ fn row(variable: &Variable) -> [String; 6] {
         VariableClass::Output => "output",
         VariableClass::Memory => "var",
         VariableClass::Constant => "const",
+        VariableClass::InOut => "inout",
+        VariableClass::Temporary => "temp",
     };
     [
         class.to_owned(),
         label::cut_name(&variable.name.text, WIDEST_COLUMN),
-        variable.type_name.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::cut_name(&ty.text, WIDEST_COLUMN)),
+        variable.ty.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::cut_name(&ty.name.text, WIDEST_COLUMN)),
         variable.address.as_ref().map_or_else(String::new, ToString::to_string),
         variable.initial.as_ref().map_or_else(String::new, |value| label::expression(value, WIDEST_COLUMN)),
         if variable.retain { "retain" } else { "" }.to_owned(),

@@ -162,9 +162,9 @@ impl Symbol {
         limits: Limits,
     ) -> Self {
         let type_name =
-            call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| types.type_of(&call.instance.text));
+            call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| call.instance.as_name().and_then(|name| types.type_of(&name.text)));
         let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
-        let instance = label::cut_name(&call.instance.text, limits.block);
+        let instance = label::reference(&call.instance, limits.block);
         let type_name = label::cut_name(type_name.unwrap_or("?"), limits.block);
 
         let widest = |pins: &[PinLabel], text: fn(&PinLabel) -> &str| {
@@ -204,9 +204,9 @@ impl<'a> InstanceTypes<'a> {
     /// Those of a program.
     pub(super) fn of(program: &'a Program) -> Self {
         let typed = |variable: &'a crate::ladder::Variable| {
-            variable.type_name.as_ref().map(|ty| (variable.name.key(), ty.text.as_str()))
+            variable.ty.as_ref().map(|ty| (variable.name.key(), ty.name.text.as_str()))
         };
-        Self(program.variables.iter().filter_map(typed).collect())
+        Self(program.units[0].variables.iter().filter_map(typed).collect())
     }
 
     fn type_of(&self, instance: &str) -> Option<&'a str> {

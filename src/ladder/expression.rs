@@ -31,6 +31,28 @@ pub enum ExpressionKind {
         /// What it gets, in the order written.
         arguments: Vec<FunctionArgument>,
     },
+    /// `[1, 2, 8(0)]`: the initial value of an array, in order of its elements.
+    Array(Vec<ArrayItem>),
+    /// `(x := 1, y := 2)`: initial values of the members of a structure or block instance.
+    Structure(Vec<MemberValue>),
+}
+
+/// One item of an array's initial value.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ArrayItem {
+    /// How many elements it is for, where that is written; else one.
+    pub repeat: Option<Expression>,
+    /// What each gets; in `8()` the type's default.
+    pub value: Option<Expression>,
+}
+
+/// One member of a structure's initial value.
+#[derive(Clone, PartialEq, Debug)]
+pub struct MemberValue {
+    /// Which.
+    pub member: Name,
+    /// What it gets.
+    pub value: Expression,
 }
 
 /// One argument of a function.
@@ -65,6 +87,13 @@ pub enum Literal {
     },
     /// `T#1m30s`: nanoseconds, negative behind a minus sign.
     Time(i64),
+    /// `colour#red`: a value of an enumeration.
+    Enumerated {
+        /// The type before the `#`.
+        ty: Name,
+        /// The value's name.
+        value: Name,
+    },
 }
 
 /// Something that can be read, and perhaps written.
@@ -94,6 +123,24 @@ pub enum Step {
     Member(Name),
     /// `.3`: a bit of a bit string, from 0.
     Bit(u8, Span),
+    /// `[i]`, `[i, 2]`: an element of an array, one index for each dimension.
+    Index(Vec<Expression>, Span),
+}
+
+impl Reference {
+    /// A reference that is a name and nothing more.
+    pub fn of_name(name: Name) -> Self {
+        let span = name.span;
+        Self { root: Root::Name(name), steps: Vec::new(), span }
+    }
+
+    /// The name, if it is nothing more.
+    pub fn as_name(&self) -> Option<&Name> {
+        match &self.root {
+            Root::Name(name) if self.steps.is_empty() => Some(name),
+            _ => None,
+        }
+    }
 }
 
 /// Operators on one operand.

@@ -4,6 +4,7 @@
 //! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5.
 
 use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Real, Time, Udint, Ulint};
+use crate::elementary::Value;
 
 /// One input or output of a block.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -12,14 +13,74 @@ pub struct Pin {
     pub name: &'static str,
     /// Its type.
     pub ty: Elementary,
+    /// What it holds before it is wired for the first time; of what is no number, its bits.
+    pub initial: i64,
+    /// The least and the greatest constant that it takes; none where it takes all of its type.
+    pub range: Option<(i64, i64)>,
+    /// What it takes.
+    pub takes: Takes,
 }
 
-const fn pin(name: &'static str, ty: Elementary) -> Pin {
-    Pin { name, ty }
+/// What an input takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Takes {
+    /// A value.
+    Value,
+    /// A constant, which has to be wired.
+    Constant,
+    /// A variable, which the block reads and writes; or an element of an array, from which on it may use those behind it. It has
+    /// to be wired.
+    Reference,
 }
 
+impl Pin {
+    /// What it holds before it is wired for the first time.
+    pub fn initial_value(&self) -> Value {
+        Value::from_bits(self.ty, self.initial.cast_unsigned())
+    }
+}
+
+macro_rules! or_zero {
+    () => {
+        0
+    };
+    ($value:literal) => {
+        $value
+    };
+}
+
+macro_rules! or_none {
+    () => {
+        None
+    };
+    ($least:literal $greatest:literal) => {
+        Some(($least, $greatest))
+    };
+}
+
+macro_rules! takes {
+    () => {
+        Takes::Value
+    };
+    (constant) => {
+        Takes::Constant
+    };
+    (reference) => {
+        Takes::Reference
+    };
+}
+
+// A pin is its name and type; `= 1` is its default, `in 0 to 9` the range of its constants; then what else than a value it takes.
 macro_rules! pins {
-    (($($name:literal: $ty:ident),*)) => { &[$(pin($name, $ty)),*] };
+    (($($name:literal: $ty:ident $(= $initial:literal)? $(in $least:literal to $greatest:literal)? $($takes:ident)?),*)) => {
+        &[$(Pin {
+            name: $name,
+            ty: $ty,
+            initial: or_zero!($($initial)?),
+            range: or_none!($($least $greatest)?),
+            takes: takes!($($takes)?),
+        }),*]
+    };
 }
 
 // A row is one rule; its blocks differ in nothing but the type that the row calls COUNT.

@@ -4,13 +4,13 @@ use super::parser::{Parse, Parser};
 use super::token::Kind;
 use super::{elements, literals};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{Address, Expression, Name, Variable, VariableClass};
+use crate::ladder::{Address, Expression, Name, TypeReference, Variable, VariableClass};
 use crate::source::Span;
 
 /// What stands behind the names of a declaration, each with its place.
 #[derive(Default)]
 struct Clauses {
-    type_name: Option<(Name, Span)>,
+    ty: Option<(TypeReference, Span)>,
     address: Option<(Address, Span)>,
     initial: Option<(Expression, Span)>,
     retain: Option<((), Span)>,
@@ -19,7 +19,7 @@ struct Clauses {
 impl Parser<'_> {
     pub(super) fn declaration(&mut self, class: VariableClass) -> Parse<()> {
         let start = self.token.span;
-        if !self.program.rungs.is_empty() {
+        if !self.program.units[0].rungs.is_empty() {
             let problem = Diagnostic::new(Code::UnexpectedToken, start, "a declaration stands behind a rung");
             self.report(problem.hint("declarations stand before the first rung"));
         }
@@ -49,16 +49,16 @@ impl Parser<'_> {
         let mut variable = Variable {
             class,
             name: Name::new("", span),
-            type_name: clauses.type_name.map(|(name, _)| name),
+            ty: clauses.ty.map(|(ty, _)| ty),
             address: clauses.address.map(|(address, _)| address),
             initial: clauses.initial.map(|(initial, _)| initial),
             retain: clauses.retain.is_some(),
             span,
         };
         if let Some(last) = names.pop() {
-            self.program.variables.extend(names.into_iter().map(|name| Variable { name, ..variable.clone() }));
+            self.program.units[0].variables.extend(names.into_iter().map(|name| Variable { name, ..variable.clone() }));
             variable.name = last;
-            self.program.variables.push(variable);
+            self.program.units[0].variables.push(variable);
         }
         Ok(())
     }
@@ -69,7 +69,7 @@ impl Parser<'_> {
             let start = self.token.span.start;
             if self.take(Kind::Colon) {
                 let name = self.name("the name of a type")?;
-                self.clause(&mut clauses.type_name, name, start, "type");
+                self.clause(&mut clauses.ty, TypeReference::of_name(name), start, "type");
             } else if self.take(Kind::Assign) {
                 let initial = self.expression()?;
                 self.clause(&mut clauses.initial, initial, start, "initial value");

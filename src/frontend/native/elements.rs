@@ -207,6 +207,7 @@ impl Parser<'_> {
         self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
         let power_output = if self.take(Kind::Dot) { Some(self.name("an output of the block")?) } else { None };
         self.anchor(self.end - 1);
+        let instance = Reference::of_name(instance);
         Ok(ElementKind::Block(BlockCall { instance, type_name, arguments, power_output }))
     }
 

@@ -70,13 +70,7 @@ impl<'a> Parser<'a> {
             lexer: Lexer::new(source.text()),
             token: Token { kind: Kind::End, span: Span::default(), first_on_line: true },
             end: 0,
-            program: Program {
-                origin: Origin::Native,
-                name: Name::new(stem, Span::default()),
-                variables: Vec::new(),
-                rungs: Vec::new(),
-                comments: Vec::new(),
-            },
+            program: Program::of_one(Origin::Native, Name::new(stem, Span::default()), Vec::new(), Vec::new()),
             diagnostics: Vec::new(),
             depth: 0,
             too_deep: false,
@@ -138,6 +132,7 @@ impl<'a> Parser<'a> {
         let name = self.name("the program's name")?;
         if first {
             self.anchor(at);
+            self.program.units[0].name = name.clone();
             self.program.name = name;
         }
         self.item_end("a declaration or a rung")
@@ -412,7 +407,7 @@ mod tests {
         assert_eq!(codes(text, 11), []);
         assert_eq!(codes(text, 10), [Code::FileTooLarge]);
         let source = Source::new("x.rung", text);
-        assert_eq!(Parser::new(&source, 4).program().program.rungs, []);
+        assert_eq!(Parser::new(&source, 4).program().program.units[0].rungs, []);
     }
 
     #[test]

@@ -21,12 +21,13 @@ pub fn print(program: &Program) -> String {
     page.line(0);
     page.push("program ");
     page.push(&words::name(&program.name.text));
-    let first_rung = program.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
-    let first = program.variables.first().map_or(first_rung, |variable| variable.name.span.start);
+    let unit = &program.units[0];
+    let first_rung = unit.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
+    let first = unit.variables.first().map_or(first_rung, |variable| variable.name.span.start);
     page.flush_trailing(first);
-    declarations::print(&mut page, &program.variables, first_rung);
-    let next_starts = program.rungs.iter().skip(1).map(|rung| rung.span.start).chain([u32::MAX]);
-    for (rung, next) in program.rungs.iter().zip(next_starts) {
+    declarations::print(&mut page, &unit.variables, first_rung);
+    let next_starts = unit.rungs.iter().skip(1).map(|rung| rung.span.start).chain([u32::MAX]);
+    for (rung, next) in unit.rungs.iter().zip(next_starts) {
         page.blank_line();
         rungs::print(&mut page, rung);
         page.flush_trailing(next);

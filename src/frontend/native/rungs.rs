@@ -39,7 +39,8 @@ impl Parser<'_> {
             return self.give_up(problem);
         }
         self.item_end("an element, a `|` or another rung")?;
-        self.program.rungs.push(Rung { name, title, enabled, circuit, span: self.since(start) });
+        let rung = Rung { name, title, enabled, circuit, span: self.since(start) };
+        self.program.units[0].rungs.push(rung);
         Ok(())
     }
 

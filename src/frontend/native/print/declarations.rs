@@ -59,7 +59,7 @@ fn together(page: &Page<'_>, first: &Variable, after: &[Variable]) -> usize {
             && next.span == first.span
             && next.class == first.class
             && next.retain == first.retain
-            && next.type_name == first.type_name
+            && next.ty == first.ty
             && next.address == first.address
             && next.initial == first.initial
             && !page.has_comment_before(next.name.span.start)
@@ -79,15 +79,17 @@ fn head(class: VariableClass) -> String {
         VariableClass::Output => "output",
         VariableClass::Memory => "var",
         VariableClass::Constant => "const",
+        VariableClass::InOut => "inout",
+        VariableClass::Temporary => "temp",
     };
     format!("{keyword:<7}")
 }
 
 fn clauses(variable: &Variable) -> String {
     let mut text = String::new();
-    if let Some(type_name) = &variable.type_name {
+    if let Some(ty) = &variable.ty {
         text.push_str(" : ");
-        text.push_str(&words::name(&type_name.text));
+        text.push_str(&words::name(&ty.name.text));
     }
     if let Some(address) = &variable.address {
         text.push_str(" at ");

@@ -44,11 +44,17 @@ pub(super) fn reference(reference: &Reference) -> String {
         Root::Address(root) => (root.to_string(), " ."),
     };
     for step in &reference.steps {
-        text.push_str(dot);
+        if !matches!(step, Step::Index(..)) {
+            text.push_str(dot);
+        }
         dot = ".";
         match step {
             Step::Member(member) => text.push_str(&name(&member.text)),
             Step::Bit(bit, _) => text.push_str(&bit.to_string()),
+            Step::Index(indices, _) => {
+                let indices: Vec<String> = indices.iter().map(expression).collect();
+                text.push_str(&format!("[{}]", indices.join(", ")));
+            }
         }
     }
     text
@@ -90,6 +96,32 @@ fn push_expression(text: &mut String, expression: &Expression) {
                     text.push_str(" := ");
                 }
                 push_expression(text, &argument.value);
+            }
+            text.push(')');
+        }
+        ExpressionKind::Array(items) => {
+            text.push('[');
+            for (index, item) in items.iter().enumerate() {
+                text.push_str(if index == 0 { "" } else { ", " });
+                match (&item.repeat, &item.value) {
+                    (None, Some(value)) => push_expression(text, value),
+                    (repeat, value) => {
+                        repeat.iter().for_each(|repeat| push_expression(text, repeat));
+                        text.push('(');
+                        value.iter().for_each(|value| push_expression(text, value));
+                        text.push(')');
+                    }
+                }
+            }
+            text.push(']');
+        }
+        ExpressionKind::Structure(members) => {
+            text.push('(');
+            for (index, member) in members.iter().enumerate() {
+                text.push_str(if index == 0 { "" } else { ", " });
+                text.push_str(&name(&member.member.text));
+                text.push_str(" := ");
+                push_expression(text, &member.value);
             }
             text.push(')');
         }
@@ -147,6 +179,7 @@ fn literal(literal: &Literal) -> String {
         ),
         Literal::Real { value, ty } => typed(ty, real(*value)),
         Literal::Time(nanoseconds) => duration(*nanoseconds),
+        Literal::Enumerated { ty, value } => format!("{}#{}", name(&ty.text), name(&value.text)),
     }
 }
 
@@ -186,7 +219,7 @@ pub(super) fn is_bare_feed(branch: &Branch) -> bool {
 
 /// `instance:TYPE(`
 pub(super) fn block_head(call: &BlockCall) -> String {
-    let instance = name(&call.instance.text);
+    let instance = reference(&call.instance);
     match &call.type_name {
         Some(type_name) => format!("{instance}:{}(", name(&type_name.text)),
         None => format!("{instance}("),
@@ -239,7 +272,7 @@ pub(super) fn simple_element(element: &Element) -> Option<String> {
             format!(">> {}", if is_return { format!("`{}`", target.text).into() } else { name(&target.text) })
         }
         ElementKind::Return => ">> return".to_owned(),
-        ElementKind::Block(_) | ElementKind::Parallel(_) => return None,
+        ElementKind::Block(_) | ElementKind::Parallel(_) | ElementKind::Statements(_) => return None,
     })
 }
 
