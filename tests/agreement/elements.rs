@@ -8,8 +8,8 @@ use rung::ladder::{
 };
 
 use crate::support::drawing::{
-    NOWHERE, argument, branch, call, coil, contact, contact_of, element, expression, integer, name, parallel, program, read,
-    reference, rung, variable,
+    NOWHERE, argument, branch, call, coil, contact, contact_of, element, expression, integer, name, parallel, program,
+    read, reference, rung, variable,
 };
 use crate::support::oracle::Oracle;
 use crate::support::rig::{Rig, checked};

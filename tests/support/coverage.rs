@@ -40,11 +40,13 @@ impl Coverage {
     /// Adds what one program is made of.
     pub(crate) fn add_program(&mut self, program: &Program) {
         self.saw_if(program.registers.is_some(), "sizes of the register machine");
-        program.types.iter().for_each(|declared| self.saw(match declared.kind {
-            TypeKind::Alias { .. } => "type with another name",
-            TypeKind::Structure(_) => "type structure",
-            TypeKind::Enumeration { .. } => "type enumeration",
-        }));
+        program.types.iter().for_each(|declared| {
+            self.saw(match declared.kind {
+                TypeKind::Alias { .. } => "type with another name",
+                TypeKind::Structure(_) => "type structure",
+                TypeKind::Enumeration { .. } => "type enumeration",
+            })
+        });
         for unit in &program.units {
             self.saw(match unit.kind {
                 UnitKind::Program { .. } => "unit program",
@@ -56,7 +58,11 @@ impl Coverage {
         for variable in program.globals.iter().chain(program.units.iter().flat_map(|unit| &unit.variables)) {
             let array = variable.ty.as_ref().is_some_and(|ty| !ty.dimensions.is_empty());
             let ty = variable.ty.as_ref().map_or(Elementary::Bool.name(), |ty| &ty.name.text);
-            let ty = if Elementary::from_name(ty).is_some() || StandardBlock::from_name(ty).is_some() { ty } else { "own type" };
+            let ty = if Elementary::from_name(ty).is_some() || StandardBlock::from_name(ty).is_some() {
+                ty
+            } else {
+                "own type"
+            };
             self.saw(&format!("declared {}{ty}", if array { "array of " } else { "" }));
             self.saw(&format!("declared {:?}", variable.class));
             self.saw_if(variable.initial.is_some(), "declared with an initial value");

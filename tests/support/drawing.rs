@@ -4,8 +4,8 @@ use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
 use rung::ladder::{
     Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Dimension, Element, ElementKind, Expression,
-    ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Step, TypeReference, UnaryOperator, Variable,
-    VariableClass, Wire,
+    ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Step, TypeReference, UnaryOperator,
+    Variable, VariableClass, Wire,
 };
 use rung::source::Span;
 
@@ -105,11 +105,7 @@ pub(crate) fn expression(kind: ExpressionKind) -> Expression {
 pub(crate) fn integer(value: i128) -> Expression {
     let magnitude = Literal::Integer { value: value.unsigned_abs(), base: 10, ty: None };
     let magnitude = expression(ExpressionKind::Literal(magnitude));
-    if value < 0 {
-        expression(ExpressionKind::Unary(UnaryOperator::Negate, Box::new(magnitude)))
-    } else {
-        magnitude
-    }
+    if value < 0 { expression(ExpressionKind::Unary(UnaryOperator::Negate, Box::new(magnitude))) } else { magnitude }
 }
 
 /// A wired pin.

@@ -255,9 +255,7 @@ impl Case {
     /// What a step sets in that program: names and values.
     pub(crate) fn settings<'a>(&'a self, step: &'a Step) -> impl Iterator<Item = (String, Value)> + 'a {
         let inputs = self.block.inputs().iter().zip(&step.inputs).enumerate();
-        let wired = inputs.filter(|(index, (pin, _))| {
-            pin.takes == Takes::Value && (*index == 0 || self.wired[*index])
-        });
+        let wired = inputs.filter(|(index, (pin, _))| pin.takes == Takes::Value && (*index == 0 || self.wired[*index]));
         let inputs = wired.map(|(_, (pin, value))| (input(pin), *value));
         inputs.chain(self.named(&step.registers)).chain([("en".to_owned(), Value::bool(step.enabled))])
     }

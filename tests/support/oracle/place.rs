@@ -3,9 +3,9 @@
 use rung::check::{Index, Place, Step, Type};
 use rung::elementary::{Elementary, Value};
 
+use super::Oracle;
 use super::expression::number;
 use super::storage::{Frame, Register, Storage};
-use super::Oracle;
 
 /// What is done with an expression or a place.
 pub(super) struct Attempt {
@@ -30,7 +30,7 @@ impl Oracle<'_> {
                 Step::Field(field) => storage.part(*field),
                 Step::Pin(pin) => storage.pin(*pin),
                 Step::Variable(id) => storage.unit().get(*id).expect("checking knows the unit's variables").clone(),
-                Step::Element(indices) => match self.element(frame, place, depth, indices, attempt) {
+                Step::Element(indices) => match self.element_at(frame, place, depth, indices, attempt) {
                     Some(element) => storage.part(element),
                     None => Storage::Nowhere,
                 },
@@ -51,7 +51,7 @@ impl Oracle<'_> {
         };
         let array = Place { variable: place.variable, path: path.to_vec(), bit: None };
         let storage = self.locate(frame, &array, attempt);
-        match (storage, self.element(frame, place, path.len(), indices, attempt)) {
+        match (storage, self.element_at(frame, place, path.len(), indices, attempt)) {
             (Storage::Parts(elements), Some(first)) => elements[first..].iter().flat_map(Storage::values).collect(),
             _ => Vec::new(),
         }
@@ -59,11 +59,12 @@ impl Oracle<'_> {
 
     fn whole(&self, frame: &Frame, place: &Place) -> Storage {
         let own = frame.get(place.variable).or_else(|| self.globals.get(place.variable));
-        own.unwrap_or_else(|| panic!("{} is no variable of this unit", self.checked.variable(place.variable).name)).clone()
+        own.unwrap_or_else(|| panic!("{} is no variable of this unit", self.checked.variable(place.variable).name))
+            .clone()
     }
 
     /// The place of an element among all of its array, which is what the path leads to at that depth.
-    fn element(
+    fn element_at(
         &mut self,
         frame: &Frame,
         place: &Place,
@@ -80,7 +81,12 @@ impl Oracle<'_> {
                 Index::Constant(offset) => i128::from(*offset),
                 Index::Computed(expression) => {
                     let offset = number(self.value(frame, expression, attempt)) - i128::from(dimension.first);
-                    self.activities.saw(frame.id, expression.as_ref(), "index a[i]", vec![Value::bool(offset & 1 == 1)]);
+                    self.activities.saw(
+                        frame.id,
+                        expression.as_ref(),
+                        "index a[i]",
+                        vec![Value::bool(offset & 1 == 1)],
+                    );
                     offset
                 }
             };

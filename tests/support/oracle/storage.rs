@@ -54,7 +54,7 @@ pub(super) struct FrameId(pub(super) u32);
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frame {
     pub(super) id: FrameId,
-    variables: Rc<[(VariableId, Storage)]>,
+    pub(super) variables: Rc<[(VariableId, Storage)]>,
 }
 
 impl Frame {
@@ -158,11 +158,7 @@ impl Storage {
 
 impl Oracle<'_> {
     /// Storage for variables side by side, each with what it starts with; `given` says that of some.
-    pub(super) fn frame(
-        &mut self,
-        variables: impl Iterator<Item = VariableId>,
-        given: &[(Step, Initial)],
-    ) -> Frame {
+    pub(super) fn frame(&mut self, variables: impl Iterator<Item = VariableId>, given: &[(Step, Initial)]) -> Frame {
         self.frames += 1;
         let id = FrameId(self.frames);
         let storage = |id: VariableId| {

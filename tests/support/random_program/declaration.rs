@@ -55,7 +55,8 @@ impl Generator {
         let given = if class == VariableClass::Constant { 100 } else { 40 };
         let initial = self.dice.percent(given).then(|| self.initial_value(ty));
         let variable = Variable {
-            ty: (ty != Elementary::Bool || self.dice.percent(20)).then(|| TypeReference::of_name(drawing::name(ty.name()))),
+            ty: (ty != Elementary::Bool || self.dice.percent(20))
+                .then(|| TypeReference::of_name(drawing::name(ty.name()))),
             initial,
             retain: matches!(class, VariableClass::Output | VariableClass::Memory) && self.dice.percent(20),
             ..drawing::variable(class, name, ty)
