@@ -1,20 +1,49 @@
-//! Expressions in IEC 61131-3 syntax, and the steps of a reference.
+//! Expressions in IEC 61131-3 syntax, references and initial values.
 
-use super::MAXIMUM_DEPTH;
-use super::literals;
-use super::parser::{Parse, Parser};
+use super::reader::{Parse, Reader};
 use super::token::{Keyword, Kind};
+use super::{MAXIMUM_DEPTH, literals};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{
-    BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Name, Reference, Root, Step, UnaryOperator,
+    ArrayItem, BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, MemberValue, Name, Reference,
+    Root, Step, UnaryOperator,
 };
 use crate::source::Span;
 
 /// An expression with the height of its tree, which is bounded as the nesting is: a long sum is as high as it is
 /// long.
-struct Tree {
-    expression: Expression,
-    height: usize,
+pub(super) struct Tree {
+    pub(super) expression: Expression,
+    pub(super) height: usize,
+}
+
+/// A reference with the height of its indices.
+pub(super) struct Path {
+    pub(super) reference: Reference,
+    pub(super) height: usize,
+}
+
+impl Path {
+    /// What it reads.
+    pub(super) fn read(self) -> Tree {
+        let expression = Expression { span: self.reference.span, kind: ExpressionKind::Read(self.reference) };
+        Tree { expression, height: self.height + 1 }
+    }
+}
+
+impl Tree {
+    /// What stands in for an expression that cannot be kept.
+    fn placeholder(span: Span) -> Self {
+        Self { expression: literal(Literal::Bool(false), span), height: 1 }
+    }
+
+    /// The name, if it is nothing more.
+    pub(super) fn as_name(&self) -> Option<&Name> {
+        match &self.expression.kind {
+            ExpressionKind::Read(reference) => reference.as_name(),
+            _ => None,
+        }
+    }
 }
 
 const fn operator(kind: Kind) -> Option<BinaryOperator> {
@@ -37,14 +66,20 @@ const fn operator(kind: Kind) -> Option<BinaryOperator> {
     })
 }
 
-impl Parser<'_> {
-    pub(super) fn expression(&mut self) -> Parse<Expression> {
+impl Reader<'_> {
+    /// An expression.
+    pub(crate) fn expression(&mut self) -> Parse<Expression> {
         Ok(self.tree()?.expression)
     }
 
-    /// Operators wait on a stack of their own until a weaker one comes, so that only parentheses recurse.
-    fn tree(&mut self) -> Parse<Tree> {
+    pub(super) fn tree(&mut self) -> Parse<Tree> {
         let first = self.operand()?;
+        self.tree_from(first)
+    }
+
+    /// An expression of which the first operand was read. Operators wait on a stack of their own until a weaker one comes, so
+    /// that only parentheses recurse.
+    pub(super) fn tree_from(&mut self, first: Tree) -> Parse<Tree> {
         if operator(self.token.kind).is_none() {
             return Ok(first);
         }
@@ -78,7 +113,7 @@ impl Parser<'_> {
     }
 
     /// Signs and NOTs, and what they stand before.
-    fn operand(&mut self) -> Parse<Tree> {
+    pub(super) fn operand(&mut self) -> Parse<Tree> {
         let mut operators = Vec::new();
         loop {
             let operator = match self.token.kind {
@@ -110,7 +145,7 @@ impl Parser<'_> {
         let (kind, height) = match self.token.kind {
             Kind::LeftParenthesis => {
                 if !self.enter()? {
-                    return Ok(Tree { expression: literal(Literal::Bool(false), self.since(span.start)), height: 1 });
+                    return Ok(Tree::placeholder(self.since(span.start)));
                 }
                 let mut tree = self.tree()?;
                 self.close(Kind::RightParenthesis, span, "")?;
@@ -124,18 +159,14 @@ impl Parser<'_> {
             }
             Kind::Literal => self.literal(),
             Kind::Name | Kind::QuotedName | Kind::Address => {
-                let reference = self.reference("a value")?;
-                match self.token.kind {
-                    Kind::LeftParenthesis if reference.steps.is_empty() => match reference.root {
-                        Root::Name(function) => return self.call(function),
-                        Root::Address(_) => (ExpressionKind::Read(reference), 1),
-                    },
-                    Kind::LeftBracket if self.touching() => {
-                        let message = "arrays are kept for a later version of the language";
-                        return self.give_up(Diagnostic::new(Code::UnexpectedToken, self.token.span, message));
+                let path = self.path("a value")?;
+                return match path.reference.as_name() {
+                    Some(function) if self.token.kind == Kind::LeftParenthesis => {
+                        let function = function.clone();
+                        self.call(function)
                     }
-                    _ => (ExpressionKind::Read(reference), 1),
-                }
+                    _ => Ok(path.read()),
+                };
             }
             Kind::Keyword(Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Mod) => {
                 let function = Name::new(self.source.slice(span), span);
@@ -143,15 +174,16 @@ impl Parser<'_> {
                 if self.token.kind == Kind::LeftParenthesis {
                     return self.call(function);
                 }
-                let message = format!("`{}` stands between two values, or before both in parentheses", function.text);
-                return self.give_up(Diagnostic::new(Code::UnexpectedToken, span, message));
+                return self.misplaced_operator(span);
             }
             _ => {
                 let problem = self.unexpected("a value");
                 return self.give_up(match self.token.kind {
                     Kind::Text => problem.hint("texts are titles of rungs, not values"),
                     Kind::Equal | Kind::Arrow => problem.hint("the operators are < <= = <> >= >"),
-                    Kind::LeftBracket => problem.hint("circuits stand at the pins of blocks, not in expressions"),
+                    Kind::LeftBracket => problem
+                        .hint("circuits stand at the pins of blocks, and values of arrays behind `:=` in declarations"),
+                    Kind::Star => problem.hint("a power is written EXPT(a, b)"),
                     _ => problem,
                 });
             }
@@ -159,11 +191,17 @@ impl Parser<'_> {
         Ok(Tree { expression: Expression { kind, span: self.since(span.start) }, height })
     }
 
+    pub(super) fn misplaced_operator<T>(&mut self, span: Span) -> Parse<T> {
+        let word = self.source.slice(span);
+        let message = format!("`{word}` stands between two values, or before both in parentheses");
+        self.give_up(Diagnostic::new(Code::UnexpectedToken, span, message))
+    }
+
     /// The arguments of a function, from the opening parenthesis on.
     fn call(&mut self, function: Name) -> Parse<Tree> {
         let (start, open) = (function.span.start, self.token.span);
         if !self.enter()? {
-            return Ok(Tree { expression: literal(Literal::Bool(false), self.since(start)), height: 1 });
+            return Ok(Tree::placeholder(self.since(start)));
         }
         let mut arguments = Vec::new();
         let mut height = 0;
@@ -179,38 +217,42 @@ impl Parser<'_> {
         }
         self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
         self.leave();
+        Ok(self.around(height, ExpressionKind::Call { function, arguments }, start))
+    }
+
+    /// An expression around others, the highest of which is so high.
+    pub(super) fn around(&mut self, height: usize, kind: ExpressionKind, start: u32) -> Tree {
         let span = self.since(start);
         if height >= MAXIMUM_DEPTH {
             self.report_too_deep(span);
-            return Ok(Tree { expression: literal(Literal::Bool(false), span), height: 1 });
+            return Tree::placeholder(span);
         }
-        let kind = ExpressionKind::Call { function, arguments };
-        Ok(Tree { expression: Expression { kind, span }, height: height + 1 })
+        Tree { expression: Expression { kind, span }, height: height + 1 }
     }
 
     /// One argument and its height.
     fn function_argument(&mut self) -> Parse<(FunctionArgument, usize)> {
-        let Tree { expression, height } = self.tree()?;
+        let tree = self.tree()?;
+        if self.token.kind == Kind::Arrow {
+            let problem = self.unexpected("`,` or `)`");
+            return self.give_up(problem.hint("within an expression a call has no outputs beside its result"));
+        }
         if self.token.kind != Kind::Assign {
-            return Ok((FunctionArgument { parameter: None, value: expression }, height));
+            return Ok((FunctionArgument { parameter: None, value: tree.expression }, tree.height));
         }
-        match expression.kind {
-            ExpressionKind::Read(Reference { root: Root::Name(parameter), steps, .. }) if steps.is_empty() => {
-                self.advance();
-                let Tree { expression: value, height } = self.tree()?;
-                Ok((FunctionArgument { parameter: Some(parameter), value }, height))
-            }
-            _ => {
-                let message = "the name of a parameter stands before `:=`";
-                self.give_up(Diagnostic::new(Code::UnexpectedToken, expression.span, message))
-            }
-        }
+        let Some(parameter) = tree.as_name().cloned() else {
+            let message = "the name of a parameter stands before `:=`";
+            return self.give_up(Diagnostic::new(Code::UnexpectedToken, tree.expression.span, message));
+        };
+        self.advance();
+        let Tree { expression: value, height } = self.tree()?;
+        Ok((FunctionArgument { parameter: Some(parameter), value }, height))
     }
 
     /// The literal that is the current token. One that cannot be read is reported, and zero put in its place.
     fn literal(&mut self) -> (ExpressionKind, usize) {
         let span = self.token.span;
-        let (negative, value) = literals::literal(self.source.slice(span)).unwrap_or_else(|problem| {
+        let (negative, value) = literals::literal(self.source.slice(span), span).unwrap_or_else(|problem| {
             self.report_literal(Code::BadLiteral, span, problem);
             (false, Literal::Integer { value: 0, base: 10, ty: None })
         });
@@ -222,24 +264,179 @@ impl Parser<'_> {
         }
     }
 
-    /// The members and bits behind what a reference starts with.
-    pub(super) fn steps_from(&mut self, root: Root, start: Span) -> Parse<Reference> {
+    /// A name or an address, with its members, bits and indices.
+    pub(crate) fn reference(&mut self, expected: &str) -> Parse<Reference> {
+        Ok(self.path(expected)?.reference)
+    }
+
+    pub(super) fn path(&mut self, expected: &str) -> Parse<Path> {
+        let start = self.token.span.start;
+        let root = match self.token.kind {
+            Kind::Address => Root::Address(self.address()),
+            _ => Root::Name(self.name(expected)?),
+        };
+        self.steps_from(root, start, false)
+    }
+
+    /// A name or an address in a circuit: a bracket that does not touch it is a parallel circuit.
+    pub(crate) fn reference_in_circuit(&mut self, expected: &str) -> Parse<Reference> {
+        let start = self.token.span.start;
+        let root = match self.token.kind {
+            Kind::Address => Root::Address(self.address()),
+            _ => Root::Name(self.name(expected)?),
+        };
+        Ok(self.steps_from(root, start, true)?.reference)
+    }
+
+    /// A reference of which the name was read.
+    pub(crate) fn reference_from(&mut self, name: Name) -> Parse<Reference> {
+        let start = name.span.start;
+        Ok(self.steps_from(Root::Name(name), start, false)?.reference)
+    }
+
+    /// The members, bits and indices behind what a reference starts with.
+    fn steps_from(&mut self, root: Root, start: u32, in_circuit: bool) -> Parse<Path> {
         let mut steps = Vec::new();
-        while self.take(Kind::Dot) {
-            let span = self.token.span;
-            if self.token.kind == Kind::Literal {
-                let bit = self.source.slice(span).parse::<u8>().unwrap_or_else(|_| {
-                    let message = "the number of a bit is at most 63";
-                    self.report(Diagnostic::new(Code::BadLiteral, span, message));
-                    0
-                });
-                steps.push(Step::Bit(bit, span));
-                self.advance();
+        let mut highest = 0;
+        loop {
+            let open = self.token.span;
+            if self.token.kind == Kind::LeftBracket && (self.touching() || !in_circuit) {
+                let (indices, height) = self.indices()?;
+                highest = highest.max(height);
+                steps.push(Step::Index(indices, self.since(open.start)));
+            } else if self.take(Kind::Dot) {
+                steps.push(self.member()?);
             } else {
-                steps.push(Step::Member(self.name("a member or the number of a bit")?));
+                break;
             }
         }
-        Ok(Reference { root, steps, span: self.since(start.start) })
+        let span = self.since(start);
+        if highest >= MAXIMUM_DEPTH {
+            self.report_too_deep(span);
+            steps.clear();
+            highest = 0;
+        }
+        Ok(Path { reference: Reference { root, steps, span }, height: highest })
+    }
+
+    /// What stands behind a dot.
+    fn member(&mut self) -> Parse<Step> {
+        let span = self.token.span;
+        if self.token.kind != Kind::Literal {
+            return Ok(Step::Member(self.name("a member or the number of a bit")?));
+        }
+        let bit = self.source.slice(span).parse::<u8>().unwrap_or_else(|_| {
+            self.report(Diagnostic::new(Code::BadLiteral, span, "the number of a bit is at most 63"));
+            0
+        });
+        self.advance();
+        Ok(Step::Bit(bit, span))
+    }
+
+    /// `[i, 2]`, and the height of the highest.
+    fn indices(&mut self) -> Parse<(Vec<Expression>, usize)> {
+        let open = self.token.span;
+        let mut indices = Vec::new();
+        let mut height = 0;
+        if !self.enter()? {
+            return Ok((indices, height));
+        }
+        loop {
+            let index = self.tree()?;
+            height = height.max(index.height);
+            indices.push(index.expression);
+            if !self.take(Kind::Comma) {
+                break;
+            }
+        }
+        self.close(Kind::RightBracket, open, "indices are parted by commas")?;
+        self.leave();
+        Ok((indices, height))
+    }
+
+    /// What a variable starts with: an expression, `[1, 2, 8(0)]` or `(x := 1, y := 2)`.
+    pub(crate) fn initial_value(&mut self) -> Parse<Expression> {
+        Ok(self.initial_tree()?.expression)
+    }
+
+    fn initial_tree(&mut self) -> Parse<Tree> {
+        match self.token.kind {
+            Kind::LeftBracket => self.array(),
+            Kind::LeftParenthesis => self.structure_or_parenthesis(),
+            _ => self.tree(),
+        }
+    }
+
+    fn array(&mut self) -> Parse<Tree> {
+        let open = self.token.span;
+        if !self.enter()? {
+            return Ok(Tree::placeholder(self.since(open.start)));
+        }
+        let mut items = Vec::new();
+        let mut highest = 0;
+        while self.token.kind != Kind::RightBracket {
+            let first = self.initial_tree()?;
+            highest = highest.max(first.height);
+            let repeated = self.token.kind == Kind::LeftParenthesis;
+            items.push(if repeated {
+                let (value, height) = self.repeated()?;
+                highest = highest.max(height);
+                ArrayItem { repeat: Some(first.expression), value }
+            } else {
+                ArrayItem { repeat: None, value: Some(first.expression) }
+            });
+            if !self.take(Kind::Comma) {
+                break;
+            }
+        }
+        self.close(Kind::RightBracket, open, "values are parted by commas")?;
+        self.leave();
+        Ok(self.around(highest, ExpressionKind::Array(items), open.start))
+    }
+
+    /// The value in `8(0)`, from the parenthesis on, and its height; there may be none.
+    fn repeated(&mut self) -> Parse<(Option<Expression>, usize)> {
+        let open = self.token.span;
+        if !self.enter()? {
+            return Ok((None, 0));
+        }
+        let value = if self.token.kind == Kind::RightParenthesis { None } else { Some(self.initial_tree()?) };
+        self.close(Kind::RightParenthesis, open, "how many stands before the parenthesis, one value in it: 8(0)")?;
+        self.leave();
+        let height = value.as_ref().map_or(0, |tree| tree.height);
+        Ok((value.map(|tree| tree.expression), height))
+    }
+
+    fn structure_or_parenthesis(&mut self) -> Parse<Tree> {
+        let open = self.token.span;
+        if !self.enter()? {
+            return Ok(Tree::placeholder(self.since(open.start)));
+        }
+        let mut first = self.tree()?;
+        let Some(mut member) = first.as_name().filter(|_| self.token.kind == Kind::Assign).cloned() else {
+            self.close(Kind::RightParenthesis, open, "")?;
+            self.leave();
+            first.expression.span = self.since(open.start);
+            return self.tree_from(first);
+        };
+        let mut members = Vec::new();
+        let mut highest = 0;
+        loop {
+            if !self.take(Kind::Assign) {
+                let problem = self.unexpected("`:=`");
+                return self.give_up(problem.hint("a value of a structure names its members: (x := 1, y := 2)"));
+            }
+            let Tree { expression: value, height } = self.initial_tree()?;
+            highest = highest.max(height);
+            members.push(MemberValue { member, value });
+            if !self.take(Kind::Comma) {
+                break;
+            }
+            member = self.name("the name of a member")?;
+        }
+        self.close(Kind::RightParenthesis, open, "members are parted by commas")?;
+        self.leave();
+        Ok(self.around(highest, ExpressionKind::Structure(members), open.start))
     }
 }
 

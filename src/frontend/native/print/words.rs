@@ -3,8 +3,8 @@
 
 use std::borrow::Cow;
 
-use super::super::literals::UNITS;
-use super::super::token::is_plain_name;
+use crate::frontend::text::literals::UNITS;
+use crate::frontend::text::token::is_plain_name;
 use crate::ladder::{
     Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression,
     ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Wire,
