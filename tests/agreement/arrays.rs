@@ -205,6 +205,7 @@ rung
   t t_1[0]() {total := half(a + k)} t_1[1]() (grid[0, 0])
 rung
   %IX0.3 (%QX0.1)
+program one : first
 program again : first",
     );
     let of_program = |name: &str| {

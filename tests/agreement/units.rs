@@ -180,7 +180,7 @@ input v : INT
 output r, s, c : INT
 output ok
 rung
-  {r := scale(v) + scale(x := 2, factor := v)}
+  {r := scale(x := v) + scale(x := 2, factor := v)}
 rung
   a scale(x := v, factor := 2, OUT => s, calls => c) (ok)",
         "ms a v | r  s c  ok
