@@ -1,16 +1,18 @@
 //! The register machine's blocks on plain numbers: timers as machines with states, registers shifted bit by bit.
 
+use super::block::Instance;
+
 /// The greatest preset and value of timers and counters.
 const DIGITS: u64 = 9999;
 /// The greatest of a drum.
 const DRUM: u64 = 2047;
 
 /// What is wired to a TT or TS.
-pub(super) struct TimerInputs {
-    pub(super) timing: bool,
-    pub(super) enable: bool,
-    pub(super) kind: u64,
-    pub(super) preset: u64,
+struct TimerInputs {
+    timing: bool,
+    enable: bool,
+    kind: u64,
+    preset: u64,
 }
 
 /// Where a timer is.
@@ -27,7 +29,7 @@ enum Phase {
 
 /// A TT or TS.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Timer {
+struct Timer {
     phase: Phase,
     /// The actual value in nanoseconds.
     actual: i128,
@@ -39,7 +41,7 @@ pub(super) struct Timer {
 
 impl Timer {
     /// The coil, and the actual value in whole units.
-    pub(super) fn run(&mut self, inputs: &TimerInputs, unit: i128, now: i64) -> (bool, u64) {
+    fn run(&mut self, inputs: &TimerInputs, unit: i128, now: i64) -> (bool, u64) {
         let preset = i128::from(inputs.preset.min(DIGITS)) * unit;
         let rises = inputs.timing && !self.circuit;
         let coil = if !inputs.enable {
@@ -112,7 +114,7 @@ impl Timer {
 
 /// An UC, or the counter of a DR.
 #[derive(Clone, Debug, Default)]
-pub(super) struct UpCounter {
+struct UpCounter {
     actual: u64,
     circuit: bool,
 }
@@ -129,13 +131,13 @@ impl UpCounter {
     }
 
     /// The coil and the actual value of an UC.
-    pub(super) fn run(&mut self, circuit: bool, enable: bool, preset: u64) -> (bool, u64) {
+    fn run(&mut self, circuit: bool, enable: bool, preset: u64) -> (bool, u64) {
         self.count(circuit, enable, DIGITS);
         (enable && self.actual >= preset.min(DIGITS), self.actual)
     }
 
     /// The coil, the actual value and the taps of a DR.
-    pub(super) fn drum(&mut self, step: bool, enable: bool, preset: u64, taps: &[u64]) -> (bool, u64, Vec<bool>) {
+    fn drum(&mut self, step: bool, enable: bool, preset: u64, taps: &[u64]) -> (bool, u64, Vec<bool>) {
         self.count(step, enable, DRUM);
         let taps = taps.iter().map(|tap| enable && self.actual >= *tap).collect();
         (enable && self.actual >= preset.min(DRUM), self.actual, taps)
@@ -144,7 +146,7 @@ impl UpCounter {
 
 /// A DC.
 #[derive(Clone, Debug, Default)]
-pub(super) struct DownCounter {
+struct DownCounter {
     /// None before the first run.
     actual: Option<u64>,
     circuit: bool,
@@ -152,7 +154,7 @@ pub(super) struct DownCounter {
 
 impl DownCounter {
     /// The coil and the actual value.
-    pub(super) fn run(&mut self, circuit: bool, enable: bool, preset: u64) -> (bool, u64) {
+    fn run(&mut self, circuit: bool, enable: bool, preset: u64) -> (bool, u64) {
         let preset = preset.min(DIGITS);
         let rises = circuit && !self.circuit;
         self.circuit = circuit;
@@ -175,23 +177,23 @@ pub(super) enum Direction {
 }
 
 /// What is wired to a SHIFTL or SHIFTR.
-pub(super) struct ShiftInputs {
-    pub(super) shift: bool,
-    pub(super) data: bool,
-    pub(super) enable: bool,
-    pub(super) count: u64,
+struct ShiftInputs {
+    shift: bool,
+    data: bool,
+    enable: bool,
+    count: u64,
 }
 
 /// A SHIFTL or SHIFTR.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shift {
+struct Shift {
     coil: bool,
     circuit: bool,
 }
 
 impl Shift {
     /// The coil. The registers, the lowest first, are all that are in the chain.
-    pub(super) fn run(&mut self, inputs: &ShiftInputs, direction: Direction, registers: &mut [u16]) -> bool {
+    fn run(&mut self, inputs: &ShiftInputs, direction: Direction, registers: &mut [u16]) -> bool {
         let rises = inputs.shift && !self.circuit;
         self.circuit = inputs.shift;
         if !inputs.enable {
@@ -228,7 +230,7 @@ fn one_place(direction: Direction, data: bool, registers: &mut [u16]) -> bool {
 }
 
 /// The coil of a BS, which `sets` a bit of a register, or of a BC, which clears it.
-pub(super) fn bit(power: bool, sets: bool, bit: u64, register: &mut u16) -> bool {
+fn bit(power: bool, sets: bool, bit: u64, register: &mut u16) -> bool {
     if bit > 15 {
         return false;
     }
@@ -239,4 +241,73 @@ pub(super) fn bit(power: bool, sets: bool, bit: u64, register: &mut u16) -> bool
         *register &= !mask;
     }
     (*register & mask != 0) == sets
+}
+
+/// What a block of the register machine remembers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Machine {
+    timer: Timer,
+    up: UpCounter,
+    down: DownCounter,
+    shift: Shift,
+}
+
+impl Instance {
+    /// A TT or TS that counts units of so many nanoseconds.
+    pub(super) fn machine_timer(&mut self, unit: i128, now: i64) {
+        let (timing, enable) = (self.bool(0), self.bool(1));
+        let inputs = TimerInputs { timing, enable, kind: self.number(2), preset: self.number(3) };
+        let (coil, actual) = self.machine.timer.run(&inputs, unit, now);
+        self.put_counter(coil, actual);
+    }
+
+    pub(super) fn machine_up_counter(&mut self) {
+        let (circuit, enable, preset) = (self.bool(0), self.bool(1), self.number(2));
+        let (coil, actual) = self.machine.up.run(circuit, enable, preset);
+        self.put_counter(coil, actual);
+    }
+
+    pub(super) fn machine_down_counter(&mut self) {
+        let (circuit, enable, preset) = (self.bool(0), self.bool(1), self.number(2));
+        let (coil, actual) = self.machine.down.run(circuit, enable, preset);
+        self.put_counter(coil, actual);
+    }
+
+    pub(super) fn machine_drum(&mut self) {
+        let (step, enable, preset) = (self.bool(0), self.bool(1), self.number(2));
+        let taps: Vec<u64> = (3..19).map(|tap| self.number(tap)).collect();
+        let (coil, actual, taps) = self.machine.up.drum(step, enable, preset, &taps);
+        self.put_counter(coil, actual);
+        for (tap, on) in taps.into_iter().enumerate() {
+            self.put_bool(2 + tap, on);
+        }
+    }
+
+    pub(super) fn machine_shift(&mut self, direction: Direction) {
+        let (shift, data, enable, count) = (self.bool(0), self.bool(1), self.bool(2), self.number(3));
+        let length = usize::try_from(self.number(5)).expect("at most 32");
+        let mut registers: Vec<u16> = (0..length).map(|place| self.register(4, place)).collect();
+        let coil = self.machine.shift.run(&ShiftInputs { shift, data, enable, count }, direction, &mut registers);
+        for (place, register) in registers.into_iter().enumerate() {
+            self.put_register(4, place, register);
+        }
+        self.put_bool(0, coil);
+    }
+
+    /// A BS, or a BC.
+    pub(super) fn machine_bit(&mut self, sets: bool) {
+        let mut register = self.register(1, 0);
+        let coil = bit(self.bool(0), sets, self.number(2), &mut register);
+        self.put_register(1, 0, register);
+        self.put_bool(0, coil);
+    }
+
+    fn number(&self, input: usize) -> u64 {
+        u64::try_from(self.integer(input)).expect("the input is a WORD or USINT")
+    }
+
+    fn put_counter(&mut self, coil: bool, actual: u64) {
+        self.put_bool(0, coil);
+        self.put_count(1, actual.into());
+    }
 }

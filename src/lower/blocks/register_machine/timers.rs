@@ -5,8 +5,8 @@
 
 use super::super::{Rule, Rules, Run};
 use super::{DIGITS, number, preset};
-use crate::elementary::Elementary::{Bool, Time, Word};
-use crate::elementary::{Elementary, Value};
+use crate::elementary::Elementary::{Bool, Lword, Time, Udint, Word};
+use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock::{Ts, Tt};
 use crate::logic::{Binary, Compare, ValueId};
 
@@ -29,25 +29,48 @@ pub(in super::super) const RULES: Rules = &[
 
 fn timer(run: &mut Run<'_>, unit: i64) {
     let kind = run.constant(KIND).bits();
-    let unit = run.logic.constant(Value::time(unit));
-    let units = preset(run, PRESET, DIGITS, Time);
-    let preset = run.logic.binary(Binary::Multiply, units, unit);
+    let (units, nanoseconds) = (preset(run, PRESET, DIGITS, Time), number(run, Time, unit));
+    let preset = run.logic.binary(Binary::Multiply, units, nanoseconds);
     let enabled = run.input(ENABLE);
     let (time, q) = match kind {
         0 => off_delay(run, preset),
         1 => on_delay(run, preset),
         _ => interval(run, preset),
     };
-    let zero = run.logic.constant(Value::time(0));
+    let zero = number(run, Time, 0);
     let time = run.logic.select(enabled, time, zero);
     let q = run.logic.and(enabled, q);
     let now = run.logic.now();
-    let value = run.logic.binary(Binary::Divide, time, unit);
-    let value = run.logic.convert(value, Word);
+    let value = whole_units(run, time, unit);
     run.set_state(LAST, now);
     run.set_state(TIME, time);
     run.set_output(Q, q);
     run.set_output(VALUE, value);
+}
+
+/// How many whole units a time from 0 to 9999 of them is, as a WORD: the quotient, without a division, which small processors
+/// take long for and hardware much room. The product with the reciprocal, which is cut off, is at most one too small: what is
+/// cut off is worth less than `time / 2^49`, below 1.
+fn whole_units(run: &mut Run<'_>, time: ValueId, unit: i64) -> ValueId {
+    // The powers of two in the unit go first, so that the product stays within 63 bits.
+    let twos = unit.trailing_zeros();
+    let reciprocal = number(run, Time, (1 << 49) / (unit >> twos));
+    let without_twos = shifted_down(run, time, twos);
+    let product = run.logic.binary(Binary::Multiply, without_twos, reciprocal);
+    let estimate = shifted_down(run, product, 49);
+    let unit = number(run, Time, unit);
+    let counted = run.logic.binary(Binary::Multiply, estimate, unit);
+    let rest = run.logic.binary(Binary::Subtract, time, counted);
+    let one_more = run.logic.compare(Compare::GreaterOrEqual, rest, unit);
+    let one_more = run.logic.convert(one_more, Time);
+    let whole = run.logic.binary(Binary::Add, estimate, one_more);
+    run.logic.convert(whole, Word)
+}
+
+fn shifted_down(run: &mut Run<'_>, time: ValueId, places: u32) -> ValueId {
+    let (bits, places) = (run.logic.convert(time, Lword), number(run, Udint, i64::from(places)));
+    let bits = run.logic.binary(Binary::ShiftRight, bits, places);
+    run.logic.convert(bits, Time)
 }
 
 /// The time between two runs that both have the timing circuit is summed up; the coil is on while the sum has come to the
@@ -69,7 +92,7 @@ fn off_delay(run: &mut Run<'_>, preset: ValueId) -> (ValueId, ValueId) {
     let was_open = run.logic.not(timed);
     let passes = run.logic.and(q, was_open);
     let delayed = time_after(run, passes, preset);
-    let zero = run.logic.constant(Value::time(0));
+    let zero = number(run, Time, 0);
     let time = run.logic.select(timing, zero, delayed);
     let remains = run.logic.compare(Compare::Less, time, preset);
     let holds = run.logic.and(q, remains);
@@ -84,7 +107,7 @@ fn interval(run: &mut Run<'_>, preset: ValueId) -> (ValueId, ValueId) {
     let was_off = run.logic.not(q);
     let starts = run.logic.and(rises, was_off);
     let passed = time_after(run, q, preset);
-    let zero = run.logic.constant(Value::time(0));
+    let zero = number(run, Time, 0);
     let time = run.logic.select(starts, zero, passed);
     let remains = run.logic.compare(Compare::Less, time, preset);
     let pulse = run.logic.or(q, starts);
