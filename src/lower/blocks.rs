@@ -9,7 +9,7 @@ mod counters;
 mod edges;
 mod timers;
 
-use super::element::{Cell, Element};
+use super::cell::{Cell, Pick};
 use super::storage::{BlockCells, Cells};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
@@ -67,7 +67,7 @@ pub(super) struct Run<'a> {
     pub(super) logic: &'a mut Builder,
     cells: &'a BlockCells,
     /// Which element of these it is.
-    element: Element,
+    pick: Pick,
     inputs: &'a [Wired],
     /// What it runs under, if it does not always run: EN, and that no jump leaves it out.
     runs: Option<ValueId>,
@@ -87,11 +87,11 @@ impl<'a> Run<'a> {
     pub(super) fn new(
         logic: &'a mut Builder,
         cells: &'a BlockCells,
-        element: Element,
+        pick: Pick,
         inputs: &'a [Wired],
         runs: Option<ValueId>,
     ) -> Self {
-        Self { logic, cells, element, inputs, runs }
+        Self { logic, cells, pick, inputs, runs }
     }
 
     /// The value on an input that is no reference.
@@ -151,11 +151,11 @@ impl<'a> Run<'a> {
     }
 
     fn get(&mut self, cells: Cells) -> ValueId {
-        Cell { cells, element: self.element }.load(self.logic)
+        Cell { cells, pick: self.pick }.load(self.logic)
     }
 
     fn set(&mut self, cells: Cells, value: ValueId) {
-        Cell { cells, element: self.element }.store(self.logic, self.runs, value);
+        Cell { cells, pick: self.pick }.store(self.logic, self.runs, value);
     }
 
     /// Whether a signal has become TRUE since the block last ran, by a BOOL state that follows it.

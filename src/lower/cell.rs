@@ -8,7 +8,7 @@ use crate::logic::{Binary, Builder, ValueId};
 
 /// Which element of each run, counted from 0 over all arrays around it.
 #[derive(Clone, Copy)]
-pub(super) enum Element {
+pub(super) enum Pick {
     /// One that is there.
     Constant(u32),
     /// One that is known while the program runs.
@@ -20,7 +20,7 @@ pub(super) enum Element {
     },
 }
 
-impl Element {
+impl Pick {
     /// The element with this number inside an array of `count` elements, which this element is.
     pub(super) fn inside(self, logic: &mut Builder, count: u32, number: u32) -> Self {
         match self {
@@ -51,49 +51,49 @@ pub(super) struct Cell {
     /// The run.
     pub(super) cells: Cells,
     /// Which of it.
-    pub(super) element: Element,
+    pub(super) pick: Pick,
 }
 
 impl Cell {
     /// What it holds.
     pub(super) fn load(self, logic: &mut Builder) -> ValueId {
-        match (self.element, self.cells.array) {
-            (Element::Constant(element), _) => logic.load(self.cells.slot(element)),
-            (Element::Computed { number, valid }, Some(array)) => {
+        match (self.pick, self.cells.array) {
+            (Pick::Constant(element), _) => logic.load(self.cells.slot(element)),
+            (Pick::Computed { number, valid }, Some(array)) => {
                 let index = or_none(logic, valid, number);
                 logic.load_indexed(array, index)
             }
-            (Element::Computed { .. }, None) => unreachable!("only arrays have indices"),
+            (Pick::Computed { .. }, None) => unreachable!("only arrays have indices"),
         }
     }
 
     /// Sets it while a condition, if there is one, is TRUE.
     pub(super) fn store(self, logic: &mut Builder, condition: Option<ValueId>, value: ValueId) {
-        match (self.element, self.cells.array) {
-            (Element::Constant(element), _) => logic.store_if(condition, self.cells.slot(element), value),
-            (Element::Computed { number, valid }, Some(array)) => {
+        match (self.pick, self.cells.array) {
+            (Pick::Constant(element), _) => logic.store_if(condition, self.cells.slot(element), value),
+            (Pick::Computed { number, valid }, Some(array)) => {
                 let valid = condition.map_or(valid, |condition| logic.and(condition, valid));
                 let index = or_none(logic, valid, number);
                 logic.store_indexed(array, index, value);
             }
-            (Element::Computed { .. }, None) => unreachable!("only arrays have indices"),
+            (Pick::Computed { .. }, None) => unreachable!("only arrays have indices"),
         }
     }
 
     /// The element so many places behind in the same run; outside the run, one that is not there.
     pub(super) fn behind(self, logic: &mut Builder, places: u32) -> Self {
-        let element = match self.element {
-            element if places == 0 => element,
-            Element::Constant(element) => match element.checked_add(places).filter(|last| *last < self.cells.count) {
-                Some(element) => Element::Constant(element),
-                None => Element::Computed { number: lint(logic, 0), valid: logic.bool(false) },
+        let pick = match self.pick {
+            pick if places == 0 => pick,
+            Pick::Constant(element) => match element.checked_add(places).filter(|last| *last < self.cells.count) {
+                Some(last) => Pick::Constant(last),
+                None => Pick::Computed { number: lint(logic, 0), valid: logic.bool(false) },
             },
-            Element::Computed { number, valid } => {
+            Pick::Computed { number, valid } => {
                 let places = lint(logic, places);
-                Element::Computed { number: logic.binary(Binary::Add, number, places), valid }
+                Pick::Computed { number: logic.binary(Binary::Add, number, places), valid }
             }
         };
-        Self { element, ..self }
+        Self { pick, ..self }
     }
 }
 
