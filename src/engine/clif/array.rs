@@ -4,7 +4,7 @@
 //! replaced by 0, of which a load drops what it reads and a store writes back what is there.
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{InstBuilder, Value, types};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 
 use super::lower::{Lowering, holder};
 use crate::elementary::Elementary;
@@ -49,5 +49,38 @@ impl Lowering<'_, '_> {
         let (value, old) = self.narrowed(value, old);
         let value = self.choose(exists, value, old);
         self.write(ty, value, pointer, way);
+    }
+
+    /// Copies an array onto another while a condition holds, else the other onto itself.
+    pub(super) fn copy_array(&mut self, to: ArrayId, from: ArrayId, condition: ValueId) {
+        let condition = self.flag(condition);
+        let to = self.program.layout.array(to);
+        self.make_all_pending(to);
+        let slot = self.program.layout.slot(to.first);
+        let from = self.program.layout.slot(self.program.layout.array(from).first).offset;
+        let [source, target] = [from, slot.offset].map(|offset| self.pointer(offset));
+        let source = self.choose(condition, source, target);
+        let size = to.count.saturating_mul(slot.ty.size());
+        self.copy(target, source, size);
+    }
+
+    /// A pointer to a byte of the image.
+    fn pointer(&mut self, offset: u32) -> Value {
+        let (pointer, way) = self.address(offset);
+        if way == 0 { pointer } else { self.builder.ins().iadd_imm_s(pointer, i64::from(way)) }
+    }
+
+    /// Copies bytes, block by block: where the two overlap they are the same.
+    fn copy(&mut self, target: Value, source: Value, size: u32) {
+        let flags = MemFlagsData::new().with_notrap();
+        let (mut at, mut left) = (0i32, size);
+        for (ty, bytes) in [(types::I8X16, 16), (types::I64, 8), (types::I32, 4), (types::I16, 2), (types::I8, 1)] {
+            while left >= bytes {
+                let block = self.builder.ins().load(ty, flags, source, at);
+                self.builder.ins().store(flags, block, target, at);
+                at = at.saturating_add(i32::try_from(bytes).unwrap_or_default());
+                left -= bytes;
+            }
+        }
     }
 }

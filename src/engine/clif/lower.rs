@@ -137,6 +137,7 @@ impl Lowering<'_, '_> {
             Op::Call(helper, a, b) => self.call(helper, ty, a, b),
             Op::LoadIndexed(array, index) => self.load_indexed(array, index),
             Op::StoreIndexed(array, index, a) => return self.store_indexed(array, index, a),
+            Op::CopyArray(to, from, condition) => return self.copy_array(to, from, condition),
         };
         let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
         let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
@@ -180,7 +181,8 @@ impl Lowering<'_, '_> {
             | Op::Convert(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
-            | Op::StoreIndexed(..) => None,
+            | Op::StoreIndexed(..)
+            | Op::CopyArray(..) => None,
         }
     }
 
@@ -228,7 +230,8 @@ impl Lowering<'_, '_> {
             | Op::Convert(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
-            | Op::StoreIndexed(..) => unreachable!("operands come before, are no stores, and only the above are late"),
+            | Op::StoreIndexed(..)
+            | Op::CopyArray(..) => unreachable!("operands come before, are no stores, and only the above are late"),
         }
     }
 

@@ -4,6 +4,7 @@
 #![expect(unsafe_code, reason = "calling compiled code is the JIT's purpose")]
 
 use std::io;
+use std::ops::Range;
 
 use memmap2::{Mmap, MmapMut};
 
@@ -73,14 +74,14 @@ impl Code {
         Ok(Self { calls, reach: image_size, _pages: Some(pages) })
     }
 
-    /// Runs every chunk in order.
+    /// Runs some chunks in order.
     ///
     /// # Panics
     /// When the image is too short.
-    pub(super) fn run(&self, image: &mut [u8], now: i64) {
+    pub(super) fn run(&self, chunks: Range<usize>, image: &mut [u8], now: i64) {
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
         let image = image.as_mut_ptr();
-        for Call { entry, bases: [a, b, c, d, e] } in &self.calls {
+        for Call { entry, bases: [a, b, c, d, e] } in &self.calls[chunks] {
             let at = |base: u32| image.wrapping_add(base as usize);
             let (a, b, c, d, e) = (at(*a), at(*b), at(*c), at(*d), at(*e));
             // SAFETY: the chunk reads and writes the slots of its layout, at the pointers' offsets from the image,

@@ -2,13 +2,12 @@
 
 use rung_runtime::Scan;
 
-use super::memory::Code;
 use super::{CompileError, Jit, host_isa};
 use crate::elementary::{Elementary, Value};
 use crate::engine::clif::{BRANCHING, Compiler};
 use crate::engine::disassemble;
 use crate::engine::interp::{Interpreter, Textbook};
-use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
+use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, Task, random};
 use crate::opt;
 
 fn compile(program: &Program) -> Jit {
@@ -21,8 +20,7 @@ fn compile_as_for_riscv64(program: &Program) -> Jit {
     let mut compiler = Compiler::new(program, &*isa).written_for_riscv64();
     let chunks: Result<Vec<_>, _> = program.chunks().into_iter().map(|sections| compiler.chunk(sections)).collect();
     let chunks = chunks.unwrap_or_else(|error| panic!("{}: {error}", program.name));
-    let code = Code::install(&chunks, program.layout.size() as usize).expect("executable memory");
-    Jit { chunks, code }
+    Jit::install(program, chunks).expect("executable memory")
 }
 
 fn agrees(program: &Program, mut jit: Jit, seed: u64) {
@@ -123,6 +121,7 @@ fn the_same_program_gives_the_same_code_however_its_chunks_are_shared_out() {
 fn a_program_without_sections_leaves_the_image_alone() {
     let mut program = random::program(3);
     program.sections.clear();
+    program.tasks = vec![Task::always(0)];
     program.instructions.clear();
     let mut jit = compile(&program);
     let mut image = random::image(&program.layout, 1);
@@ -135,7 +134,10 @@ fn a_program_without_sections_leaves_the_image_alone() {
 #[test]
 #[should_panic(expected = "shorter than the program's layout")]
 fn an_image_that_is_too_short_is_refused() {
-    compile(&random::program(3)).scan(&mut [0; 3], 0);
+    let mut program = random::program(3);
+    // So that it is the code that refuses.
+    program.tasks = vec![Task::always(program.tasks[program.tasks.len() - 1].end)];
+    compile(&program).scan(&mut [0; 3], 0);
 }
 
 #[test]
