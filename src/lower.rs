@@ -97,6 +97,14 @@ struct Running<'a> {
 }
 
 impl<'a> Running<'a> {
+    /// Before the first program.
+    fn nothing(slots: &'a Slots) -> Self {
+        let frame = &slots.globals;
+        let (id, end, pick) = (UnitId(0), RungIndex(0), Pick::Constant(0));
+        let (references, edges, nodes) = (Vec::new(), frame.edges.iter(), Vec::new());
+        Self { id, is_function: false, end, frame, pick, references, edges, nodes }
+    }
+
     fn new(
         checked: &Checked,
         id: UnitId,
