@@ -5,14 +5,18 @@
 //! - the layout is sound: aligned slots inside the image that do not overlap, unique names, initial values of their
 //!   slots' types, observed slots that exist, runs that cover their slots, tail padding
 //!   (see [`Layout::problems`](super::Layout::problems));
-//! - sections are in order and together cover all instructions, their origins exist, and the first starts a chunk;
+//! - sections are in order and together cover all instructions, and their origins exist;
+//! - there is a task, tasks are in order and together cover all sections, and the first section of each starts a chunk;
+//! - a task has an interval above 0 and a slot of type TIME that no other task has, or neither;
 //! - every operand is defined before, in the same chunk, and not by a store, which has no value;
 //! - every slot or array that is loaded or stored exists and has the instruction's type, and a stored value has it too;
+//! - arrays of which one is copied to the other have one type and count, and are the same or share no slot;
 //! - an index is a LINT, and constants are in register form;
 //! - the types of operands and results are those of the op table, and of [`Op`]'s description.
 //!
 //! It must never panic, whatever the program.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use super::{ArrayId, Instruction, Op, Program, SlotId, ValueId};
@@ -54,9 +58,6 @@ pub fn verify(program: &Program) -> Result<(), Vec<Problem>> {
         if section.origin as usize >= program.origins.len() {
             problem(format!("section {index} has the origin {}, which there is not", section.origin));
         }
-        if index == 0 && !section.starts_chunk {
-            problem("the first section does not start a chunk".to_owned());
-        }
         if section.starts_chunk {
             chunk_start = start;
         }
@@ -71,7 +72,40 @@ pub fn verify(program: &Program) -> Result<(), Vec<Problem>> {
         let message = format!("the sections end at {start}, before the instructions do");
         problems.push(Problem { instruction: None, message });
     }
+    problems.extend(tasks(program).into_iter().map(|message| Problem { instruction: None, message }));
     if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn tasks(program: &Program) -> Vec<String> {
+    let mut problems = Vec::new();
+    let (mut start, mut slots) = (0, HashSet::new());
+    for (index, task) in program.tasks.iter().enumerate() {
+        let end = task.end as usize;
+        if end < start || end > program.sections.len() {
+            problems.push(format!("task {index} cannot end at {end}"));
+            return problems;
+        }
+        if end > start && !program.sections[start].starts_chunk {
+            problems.push(format!("the first section of task {index} does not start a chunk"));
+        }
+        match (task.interval, task.due) {
+            (None, None) => {}
+            (Some(interval), _) if interval <= 0 => problems.push(format!("task {index} has the interval {interval}")),
+            (Some(_), Some(due)) => match program.layout.slots().get(due.index()) {
+                Some(slot) if slot.ty == Elementary::Time && slots.insert(due) => {}
+                Some(_) => problems.push(format!("task {index} cannot keep when it is due in {due}")),
+                None => problems.push(format!("task {index} has {due}, which does not exist")),
+            },
+            (Some(_), None) | (None, Some(_)) => {
+                problems.push(format!("task {index} has not both, an interval and a slot for when it is due"));
+            }
+        }
+        start = end;
+    }
+    if program.tasks.is_empty() || start != program.sections.len() {
+        problems.push(format!("the tasks end at {start}, before the sections do"));
+    }
+    problems
 }
 
 fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<(), String> {
@@ -112,6 +146,17 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Store(to, a) => slot(to).and(expect(a, ty)),
         Op::LoadIndexed(from, index) => array(from).and(expect(index, Elementary::Lint)),
         Op::StoreIndexed(to, index, a) => array(to).and(expect(index, Elementary::Lint)).and(expect(a, ty)),
+        Op::CopyArray(to, from, condition) => {
+            array(to).and(array(from)).and(expect(condition, Elementary::Bool))?;
+            let [a, b] = [to, from].map(|id| program.layout.array(id));
+            if a.count != b.count {
+                Err(format!("{to} has {} elements, but {from} has {}", a.count, b.count))
+            } else if a != b && a.first < b.slots().end && b.first < a.slots().end {
+                Err(format!("{to} and {from} share slots"))
+            } else {
+                Ok(())
+            }
+        }
         Op::Unary(op, a) => takes(op.mnemonic(), op.domain()).and(expect(a, ty)),
         Op::Binary(op, a, b) => {
             let second = if op.takes_amount() { Elementary::Udint } else { ty };
@@ -213,7 +258,7 @@ mod tests {
         );
         assert_eq!(
             message_of(|program| program.sections[0].starts_chunk = false),
-            ["the first section does not start a chunk"]
+            ["the first section of task 0 does not start a chunk"]
         );
         assert_eq!(message_of(|program| program.sections[1].starts_chunk = true), ["v4: v1 is of an earlier chunk"]);
     }

@@ -39,7 +39,7 @@ pub(super) fn forward(program: Program) -> Program {
                 output.emit(instruction.ty, instruction.op);
                 None
             }
-            Op::StoreIndexed(array, ..) => {
+            Op::StoreIndexed(array, ..) | Op::CopyArray(array, ..) => {
                 // Any of its elements may be another now.
                 let slots: Vec<SlotId> = known.range(arrays[array.index()].slots()).map(|(slot, _)| *slot).collect();
                 slots.iter().for_each(|slot| {

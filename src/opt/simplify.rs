@@ -10,6 +10,10 @@ pub(super) fn simplify(program: Program) -> Program {
         let simpler = folded(output, instruction).or_else(|| simplified(output, instruction));
         match (simpler, instruction.op) {
             (Some(value), _) => Some(value),
+            // A copy that is never made, or of what is there.
+            (None, Op::CopyArray(to, from, condition)) if to == from || output.constant_of(condition) == Some(0) => {
+                None
+            }
             (None, op) if !op.has_value() => {
                 output.emit(instruction.ty, instruction.op);
                 None
@@ -23,9 +27,13 @@ pub(super) fn simplify(program: Program) -> Program {
 fn folded(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     let constant = |value| output.constant_of(value);
     let bits = match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
-            return None;
-        }
+        Op::Constant(_)
+        | Op::Now
+        | Op::Load(_)
+        | Op::Store(..)
+        | Op::LoadIndexed(..)
+        | Op::StoreIndexed(..)
+        | Op::CopyArray(..) => return None,
         Op::Unary(op, a) => evaluate::unary(op, ty, constant(a)?),
         Op::Binary(op, a, b) => evaluate::binary(op, ty, constant(a)?, constant(b)?),
         Op::Compare(op, a, b) => u64::from(evaluate::compare(op, output.ty(a), constant(a)?, constant(b)?)),
@@ -40,7 +48,7 @@ fn folded(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<Va
 fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     match op {
         Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) | Op::Call(..) => None,
-        Op::LoadIndexed(..) | Op::StoreIndexed(..) => None,
+        Op::LoadIndexed(..) | Op::StoreIndexed(..) | Op::CopyArray(..) => None,
         Op::Unary(op, a) => unary(output, op, a),
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),

@@ -19,6 +19,11 @@ pub(super) fn sweep(program: Program) -> Program {
                     overwritten.remove(&slot);
                 }
                 Op::StoreIndexed(..) => needed[index] = true,
+                Op::CopyArray(_, from, _) => {
+                    needed[index] = true;
+                    let read = program.layout.array(from).slots();
+                    overwritten.retain(|slot| !read.contains(slot));
+                }
                 Op::LoadIndexed(array, _) if needed[index] => {
                     let read = program.layout.array(array).slots();
                     overwritten.retain(|slot| !read.contains(slot));

@@ -43,6 +43,7 @@ fn print(program: &Program) -> String {
             Op::Store(slot, a) => format!("{} := {a}", name(slot)),
             Op::LoadIndexed(array, place) => format!("v{index} = {array}[{place}]"),
             Op::StoreIndexed(array, place, a) => format!("{array}[{place}] := {a}"),
+            Op::CopyArray(to, from, condition) => format!("{to} := {from} while {condition}"),
             Op::Unary(op, a) => format!("v{index} = {} {a}", op.mnemonic()),
             Op::Binary(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
             Op::Compare(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
