@@ -158,7 +158,7 @@ impl Generator {
             block.outputs().iter().filter(|pin| pin.ty == Elementary::Bool).map(|pin| pin.name).collect();
         let chosen = !bools.is_empty() && self.dice.percent(if bools.len() > 1 { 60 } else { 15 });
         drawing::element(ElementKind::Block(BlockCall {
-            instance: drawing::name(&instance.name),
+            instance: Reference::of_name(drawing::name(&instance.name)),
             type_name: (!instance.declared || self.dice.percent(10)).then(|| drawing::name(block.name())),
             arguments,
             power_output: chosen.then(|| drawing::name(self.dice.pick::<&str>(&bools))),
