@@ -7,6 +7,7 @@ mod analog;
 mod bistables;
 mod counters;
 mod edges;
+mod register_machine;
 mod timers;
 
 use super::cell::{Cell, Pick};
@@ -27,8 +28,18 @@ pub(super) struct Rule {
 type Rules = &'static [(&'static [StandardBlock], Rule)];
 
 /// The rule of each block, in the order of [`StandardBlock::ALL`]. A block without one, or with two, does not compile.
-static RULES: [&Rule; StandardBlock::ALL.len()] =
-    ordered(&[analog::RULES, bistables::RULES, counters::RULES, edges::RULES, timers::RULES]);
+static RULES: [&Rule; StandardBlock::ALL.len()] = ordered(&[
+    analog::RULES,
+    bistables::RULES,
+    counters::RULES,
+    edges::RULES,
+    timers::RULES,
+    register_machine::bits::RULES,
+    register_machine::counters::RULES,
+    register_machine::drum::RULES,
+    register_machine::shifts::RULES,
+    register_machine::timers::RULES,
+]);
 
 /// The rule of a block.
 pub(super) fn rule(block: StandardBlock) -> &'static Rule {
