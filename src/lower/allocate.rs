@@ -8,9 +8,7 @@ use std::collections::{HashMap, HashSet};
 use super::blocks;
 use super::storage::{BlockCells, Cells, Frame, Slots, Storage};
 use super::used::Used;
-use crate::check::{
-    ArrayType, Checked, Initial, PinId, Step, Type, UnitId, UnitKind, Variable, VariableId,
-};
+use crate::check::{ArrayType, Checked, Initial, PinId, Step, Type, UnitId, UnitKind, Variable, VariableId};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{self, VariableClass};
@@ -34,7 +32,7 @@ pub(super) fn allocate(
         located: HashMap::new(),
     };
     let none = |prefix: &str| Owner::top(prefix.to_owned());
-    let globals = allocator.frame(checked.globals().collect(), &none(""));
+    let globals = allocator.frame(checked.globals(), &none(""));
     allocator.observe_frame(checked.globals(), &globals, "");
     let mut programs = Vec::new();
     for program in checked.programs() {
@@ -106,7 +104,13 @@ impl<'a> Part<'a> {
 
     /// The elements of each.
     fn elements(&self, array: &ArrayType) -> Self {
-        let mut part = Self { names: Vec::new(), initials: Vec::new(), array: true, declaration: self.declaration.clone(), ..*self };
+        let mut part = Self {
+            names: Vec::new(),
+            initials: Vec::new(),
+            array: true,
+            declaration: self.declaration.clone(),
+            ..*self
+        };
         for (owner, initial) in self.names.iter().zip(&self.initials) {
             for (place, index) in (0..).zip(indices(array)) {
                 part.names.push(format!("{owner}[{index}]"));
@@ -155,7 +159,7 @@ impl<'a> Allocator<'a> {
     /// The variables and edges of a unit.
     fn unit(&mut self, id: UnitId, owner: &Owner<'a>) -> Frame {
         let unit = self.checked.unit(id);
-        let mut frame = self.frame(unit.variables().collect(), owner);
+        let mut frame = self.frame(unit.variables(), owner);
         for (rung, count) in unit.rungs.iter().zip(&self.used.edges[id.index()]) {
             for number in 1..=*count {
                 let part = Part {
@@ -175,10 +179,9 @@ impl<'a> Allocator<'a> {
     }
 
     /// Variables side by side.
-    fn frame(&mut self, variables: Vec<VariableId>, owner: &Owner<'a>) -> Frame {
-        let first = variables.first().copied().unwrap_or(VariableId(0));
-        let variables = variables.into_iter().map(|id| self.variable(id, owner)).collect();
-        Frame { first, variables, edges: Vec::new() }
+    fn frame(&mut self, variables: impl Iterator<Item = VariableId>, owner: &Owner<'a>) -> Frame {
+        let variables = variables.filter_map(|id| Some((id, self.variable(id, owner)?))).collect();
+        Frame { variables, edges: Vec::new() }
     }
 
     /// `None` for one that has no storage of its own.
@@ -246,7 +249,8 @@ impl<'a> Allocator<'a> {
             let initials = of.initials.iter().map(initial).collect();
             allocator.cells(&of, pin.ty, initials)
         };
-        let outputs = block.outputs().iter().enumerate().map(|(place, of)| pin(self, PinId::Output(place), of)).collect();
+        let outputs =
+            block.outputs().iter().enumerate().map(|(place, of)| pin(self, PinId::Output(place), of)).collect();
         let inputs = block.inputs().iter().enumerate();
         let inputs = inputs
             .map(|(place, of)| {

@@ -212,12 +212,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// The value of one of the program's own functions in an expression.
-    pub(super) fn operand(
-        &mut self,
-        unit: UnitId,
-        arguments: &[Option<Expression>],
-        references: &[Place],
-    ) -> ValueId {
+    pub(super) fn operand(&mut self, unit: UnitId, arguments: &[Option<Expression>], references: &[Place]) -> ValueId {
         let mut inputs = Vec::with_capacity(arguments.len());
         for (pin, argument) in arguments.iter().enumerate() {
             if let Some(argument) = argument {
@@ -241,9 +236,7 @@ impl<'a> Lowering<'a> {
         let slots = self.slots;
         let Some(frame) = slots.functions.get(&unit) else { unreachable!("a function that is called has a frame") };
         let declared = self.checked.unit(unit);
-        let own = |lowering: &Self, id: VariableId| {
-            Part { local: true, ..lowering.own(frame, Pick::Constant(0), id) }
-        };
+        let own = |lowering: &Self, id: VariableId| lowering.own(frame, Pick::Constant(0), id).of_function();
         let caller = self.enter_function(enabled);
         for id in declared.variables().filter(|id| frame.get(*id).is_some()) {
             let variable = own(self, id);

@@ -55,9 +55,7 @@ impl Lowering<'_> {
                 let (left, right) = (self.known_value(left)?, self.known_value(right)?);
                 match operation(*operator) {
                     Operation::Binary(op) => evaluate::binary(op, ty, left.bits(), right.bits()),
-                    Operation::Compare(op) => {
-                        u64::from(evaluate::compare(op, left.ty(), left.bits(), right.bits()))
-                    }
+                    Operation::Compare(op) => u64::from(evaluate::compare(op, left.ty(), left.bits(), right.bits())),
                 }
             }
             ExpressionKind::UserCall { .. } | ExpressionKind::Call { .. } => return None,

@@ -43,6 +43,11 @@ impl<'a> Part<'a> {
         Self { node: Node::Storage(storage), ty, pick, bit: None, local: false }
     }
 
+    /// The same as a function's own.
+    pub(super) fn of_function(self) -> Self {
+        Self { local: true, ..self }
+    }
+
     /// A pin of it.
     pub(super) fn pin(self, cells: Cells) -> Self {
         Self { node: Node::Pin(cells), ..self }
@@ -128,7 +133,7 @@ impl<'a> Lowering<'a> {
             },
             (Step::Element(indices), Type::Array(array), Storage::Array(elements)) => {
                 let array = self.checked.array(array);
-                let pick = self.element(part.pick, array, indices);
+                let pick = self.pick(part.pick, array, indices);
                 Part { pick, ..part.inner(elements, array.element) }
             }
             _ => unreachable!("checking makes only paths that their types have"),
@@ -136,7 +141,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// Which element of the runs an array's element is.
-    fn element(&mut self, outer: Pick, array: &ArrayType, indices: &[Index]) -> Pick {
+    fn pick(&mut self, outer: Pick, array: &ArrayType, indices: &[Index]) -> Pick {
         let offsets: Vec<Offset> = (indices.iter().zip(&array.dimensions))
             .map(|(index, dimension)| match index {
                 Index::Constant(offset) => Offset::Known(*offset),
@@ -152,11 +157,11 @@ impl<'a> Lowering<'a> {
         });
         match known {
             Some(number) => outer.inside(&mut self.logic, array.count(), number),
-            None => self.computed_element(outer, array, &offsets),
+            None => self.computed_pick(outer, array, &offsets),
         }
     }
 
-    fn computed_element(&mut self, outer: Pick, array: &ArrayType, offsets: &[Offset]) -> Pick {
+    fn computed_pick(&mut self, outer: Pick, array: &ArrayType, offsets: &[Offset]) -> Pick {
         let mut number = self.lint(0);
         let mut valid = self.logic.bool(true);
         for (offset, dimension) in offsets.iter().zip(&array.dimensions) {

@@ -185,6 +185,10 @@ impl Lowering<'_> {
 /// What the variable of a loop holds after so many steps: as all integers, it wraps around.
 fn stepped(first: Value, step: i128, times: u32) -> Value {
     let value = first.as_integer().unwrap_or_default().wrapping_add(step.wrapping_mul(i128::from(times)));
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the low 64 bits are the register form")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the low 64 bits are the register form"
+    )]
     Value::from_bits(first.ty(), value as u64)
 }

@@ -53,10 +53,8 @@ pub(super) struct BlockCells {
 
 /// Where the variables of a unit, or the global ones, lie.
 pub(super) struct Frame {
-    /// The first of the variables.
-    pub(super) first: VariableId,
-    /// One entry a variable; `None` for one that stands for another, or whose storage is that of its address.
-    pub(super) variables: Vec<Option<Storage>>,
+    /// Its variables, but one that stands for another, or whose storage is that of its address.
+    pub(super) variables: HashMap<VariableId, Storage>,
     /// The memories of the edge contacts and edge coils, in the order of the drawing.
     pub(super) edges: Vec<Cells>,
 }
@@ -64,8 +62,7 @@ pub(super) struct Frame {
 impl Frame {
     /// Where one of its variables lies.
     pub(super) fn get(&self, variable: VariableId) -> Option<&Storage> {
-        let place = variable.index().checked_sub(self.first.index())?;
-        self.variables.get(place)?.as_ref()
+        self.variables.get(&variable)
     }
 }
 
