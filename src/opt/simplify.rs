@@ -10,6 +10,10 @@ pub(super) fn simplify(program: Program) -> Program {
         let simpler = folded(output, instruction).or_else(|| simplified(output, instruction));
         match (simpler, instruction.op) {
             (Some(value), _) => Some(value),
+            // A copy that is never made, or of what is there.
+            (None, Op::CopyArray(to, from, condition)) if to == from || output.constant_of(condition) == Some(0) => {
+                None
+            }
             (None, op) if !op.has_value() => {
                 output.emit(instruction.ty, instruction.op);
                 None

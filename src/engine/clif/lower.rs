@@ -60,6 +60,7 @@ pub(super) fn chunk(
         pointers,
         helpers: params.get(BASES + 1).copied(),
         helper_signature: None,
+        copy_signature: None,
         held: vec![None; end - first],
         uses,
         alive: 0,
@@ -93,6 +94,8 @@ pub(super) struct Lowering<'a, 'f> {
     pub(super) helpers: Option<Value>,
     /// What helpers take and give, once one is called.
     pub(super) helper_signature: Option<SigRef>,
+    /// The same of the one that copies.
+    pub(super) copy_signature: Option<SigRef>,
     /// By instruction of the chunk: what holds its value, once made.
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.

@@ -9,13 +9,23 @@ use std::ops::Range;
 use memmap2::{Mmap, MmapMut};
 
 use crate::engine::clif::{BASES, Chunk};
-use crate::engine::helpers::{HELPERS, HelperFunction};
+use crate::engine::helpers::{HELPERS, Table};
 
 /// The type of a chunk's function: the image at each base, with the time second.
 type Function = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8);
 
 /// The type of the function of a chunk that calls helpers: it takes the table of them, too.
-type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const HelperFunction);
+type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const Table);
+
+/// What chunks that call helpers are given.
+static TABLE: Table = Table { functions: HELPERS, copy };
+
+/// Copies the elements of an array.
+unsafe extern "C" fn copy(to: *mut u8, from: *const u8, count: usize) {
+    // SAFETY: a chunk passes the first bytes of two arrays of its layout, both `count` bytes long, in the image that it
+    // was called with; see `Code::run`.
+    unsafe { std::ptr::copy(from, to, count) }
+}
 
 /// Installed code.
 #[derive(Debug)]
@@ -91,7 +101,7 @@ impl Code {
             unsafe {
                 match entry {
                     Entry::Plain(function) => function(a, now, b, c, d, e),
-                    Entry::Helped(function) => function(a, now, b, c, d, e, HELPERS.as_ptr()),
+                    Entry::Helped(function) => function(a, now, b, c, d, e, &raw const TABLE),
                 }
             }
         }

@@ -200,6 +200,74 @@ fn a_chunk_that_needs_too_many_values_at_one_time_is_refused_at_once() {
     }
 }
 
+/// A program that copies an array of `count` elements to the one behind it while its first slot is TRUE, and its type.
+fn copying(ty: Elementary, count: u32) -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: String, ty| {
+        let (area, initial) = (Area::Memory, Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+    };
+    let condition = slot("condition".into(), Elementary::Bool);
+    let [from, to] =
+        ["from", "to"].map(|name| (0..count).map(|at| slot(format!("{name}[{at}]"), ty)).collect::<Vec<_>>());
+    slot("behind".into(), ty);
+    let [from, to] = [from, to].map(|slots| layout.array(slots[0], count));
+    let mut logic = Builder::new("copying", layout.finish(None).expect("a small image"));
+    let condition = logic.load(condition);
+    logic.copy_array(to, from, Some(condition));
+    logic.end_section(Origin { label: "r".into(), line: 1 });
+    logic.finish()
+}
+
+#[test]
+fn a_copy_moves_all_of_an_array_or_nothing_whatever_its_size() {
+    for ty in [Elementary::Bool, Elementary::Int, Elementary::Real, Elementary::Time] {
+        for bytes in [8, 16, 24, 32, 40, 56, 120, 1016, 1024, 1032, 4000] {
+            let count = bytes / ty.size() + u32::from(ty == Elementary::Bool);
+            let program = copying(ty, count);
+            let mut engines: [Box<dyn Scan>; 4] = [
+                Box::new(Textbook::new(&program)),
+                Box::new(Interpreter::new(&program)),
+                Box::new(compile(&program)),
+                Box::new(compile_as_for_riscv64(&program)),
+            ];
+            for copies in [false, true] {
+                let mut image = random::image(&program.layout, u64::from(bytes));
+                let slots = program.layout.slots();
+                slots[0].write(&mut image, Value::bool(copies));
+                let mut expected = image.clone();
+                for element in 1..=count as usize {
+                    if copies {
+                        slots[element + count as usize].write(&mut expected, slots[element].read(&image));
+                    }
+                }
+                for engine in &mut engines {
+                    let mut actual = image.clone();
+                    engine.scan(&mut actual, 0);
+                    assert_eq!(actual, expected, "{ty}, {count} elements, {copies}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn a_copy_is_two_moves_for_16_bytes_or_a_call() {
+    let target = host_isa().expect("a host with a back end").triple().clone();
+    let lines = |count| {
+        let jit = compile(&copying(Elementary::Int, count));
+        let chunk = &jit.chunks()[0];
+        disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).expect("a decoder for the host")
+    };
+    let short = lines(100);
+    let (moves, rest): (Vec<_>, Vec<_>) = short.iter().partition(|line| line.text.contains("xmm"));
+    assert_eq!(moves.len(), 24, "{short:#?}");
+    assert!(rest.len() < 20 && !short.iter().any(|line| line.jumps), "{short:#?}");
+    let long = lines(1000);
+    assert!(long.len() < 30 && long.iter().filter(|line| line.calls).count() == 1, "{long:#?}");
+}
+
 /// Indices at which something could go wrong: the ends of an array, of its bytes, and of all integers.
 fn extreme_indices(count: i64) -> Vec<i64> {
     let mut indices: Vec<i64> = (-2..count + 3).collect();
