@@ -302,7 +302,9 @@ mod tests {
         assert_eq!(map["tasks"], serde_json::json!([fast]));
         // The same from before there were arrays and tasks.
         let mut earlier = map.clone();
-        ["arrays", "tasks"].map(|key| earlier.as_object_mut().unwrap().remove(key));
+        for key in ["arrays", "tasks"] {
+            earlier.as_object_mut().unwrap().remove(key);
+        }
         assert_eq!(read_map(&Source::new("map", earlier.to_string())), read_map(&Source::new("map", text)));
     }
 
