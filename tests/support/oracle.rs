@@ -15,6 +15,7 @@ mod call;
 mod expression;
 mod function;
 mod place;
+mod register_machine;
 mod statement;
 mod storage;
 #[cfg(test)]

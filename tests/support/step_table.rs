@@ -74,6 +74,15 @@ const TABLES: &[(&[StandardBlock], &str)] = {
         (&[B::Ramp], include_str!("../blocks/ramp.csv")),
         (&[B::Hysteresis], include_str!("../blocks/hysteresis.csv")),
         (&[B::Rs], include_str!("../blocks/rs.csv")),
+        (&[B::Tt], include_str!("../blocks/tt.csv")),
+        (&[B::Ts], include_str!("../blocks/ts.csv")),
+        (&[B::Uc], include_str!("../blocks/uc.csv")),
+        (&[B::Dc], include_str!("../blocks/dc.csv")),
+        (&[B::Dr], include_str!("../blocks/dr.csv")),
+        (&[B::Shiftl], include_str!("../blocks/shiftl.csv")),
+        (&[B::Shiftr], include_str!("../blocks/shiftr.csv")),
+        (&[B::Bs], include_str!("../blocks/bs.csv")),
+        (&[B::Bc], include_str!("../blocks/bc.csv")),
     ]
 };
 

@@ -4,6 +4,7 @@ use rung::elementary::{Elementary, Value};
 use rung::ladder::library::{Pin, StandardBlock};
 
 use super::analog::{Derivative, Pid, PidInputs, Ramp, hysteresis, integral};
+use super::register_machine::{Direction, Machine};
 use super::storage::Register;
 
 /// One instance: its pins and what it remembers.
@@ -23,6 +24,7 @@ pub(crate) struct Instance {
     derivative: Derivative,
     pid: Pid,
     ramp: Ramp,
+    pub(super) machine: Machine,
 }
 
 /// Where a timer is.
@@ -48,6 +50,7 @@ impl Instance {
             derivative: Derivative::default(),
             pid: Pid::default(),
             ramp: Ramp::default(),
+            machine: Machine::default(),
         }
     }
 
@@ -76,6 +79,15 @@ impl Instance {
             | StandardBlock::CtudLint
             | StandardBlock::CtudUdint
             | StandardBlock::CtudUlint => self.count_up_and_down(),
+            StandardBlock::Tt => self.machine_timer(100_000_000, now),
+            StandardBlock::Ts => self.machine_timer(1_000_000_000, now),
+            StandardBlock::Uc => self.machine_up_counter(),
+            StandardBlock::Dc => self.machine_down_counter(),
+            StandardBlock::Dr => self.machine_drum(),
+            StandardBlock::Shiftl => self.machine_shift(Direction::Left),
+            StandardBlock::Shiftr => self.machine_shift(Direction::Right),
+            StandardBlock::Bs => self.machine_bit(true),
+            StandardBlock::Bc => self.machine_bit(false),
             StandardBlock::RTrig => {
                 let rises = self.rises(0, 0);
                 self.put_bool(0, rises);
