@@ -31,6 +31,7 @@ mod network;
 mod place;
 mod report;
 mod scope;
+mod size;
 pub(crate) mod spelling;
 mod statement;
 mod type_table;
@@ -80,6 +81,7 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         direct: Direct::default(),
         too_deep: HashSet::new(),
         loops: 0,
+        turns: None,
         usage: Usage::default(),
         labels: Labels::default(),
     };
@@ -87,8 +89,8 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
-    checker.check_calls_end();
     let (tasks, programs) = checker.check_tasks();
+    checker.check_sizes(&programs);
     checker.check_unused();
     let Checker { report, scope, types, units, .. } = checker;
     let (runs, diagnostics) = report.finish();
@@ -125,6 +127,8 @@ struct Checker<'p> {
     too_deep: HashSet<(usize, usize)>,
     /// The FORs around what is being checked.
     loops: u32,
+    /// How often they repeat it; none where it does not run.
+    turns: Option<u64>,
     usage: Usage,
     labels: Labels,
 }

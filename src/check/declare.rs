@@ -161,7 +161,7 @@ impl Checker<'_> {
             return;
         };
         if let Some(id) = id {
-            let is_instance = self.holds_instance(ty);
+            let is_instance = self.types.holds_instance(ty);
             let entry = self.scope.entry_mut(id);
             (entry.variable.ty, entry.variable.initial) = (ty, initial);
             // What is wrong with an instance that is no memory is said, and not at its uses again.
@@ -175,7 +175,7 @@ impl Checker<'_> {
     /// What a declaration of this type cannot say, and its storage.
     fn check_placement(&mut self, declared: &ladder::Variable, id: Option<VariableId>, ty: Type) {
         let class = id.map_or(declared.class, |id| self.scope.entry(id).variable.class);
-        if self.holds_instance(ty) {
+        if self.types.holds_instance(ty) {
             self.check_instance(declared, ty);
         } else if declared.retain
             && matches!(class, VariableClass::Input | VariableClass::Constant)
@@ -253,18 +253,6 @@ impl Checker<'_> {
         if let Some(address) = &declared.address {
             let problem = Diagnostic::new(Code::TypeMismatch, address.span, format!("{instance} has no address"));
             self.report.push(problem.hint("wire one of its outputs to a variable at that address"));
-        }
-    }
-
-    /// Whether a type is that of a block instance, or holds one.
-    pub(super) fn holds_instance(&self, ty: Type) -> bool {
-        match ty {
-            Type::Elementary(_) => false,
-            Type::Block(_) | Type::Unit(_) => true,
-            Type::Array(array) => self.holds_instance(self.types.arrays[array.index()].element),
-            Type::Structure(structure) => {
-                self.types.structures[structure.index()].fields.iter().any(|field| self.holds_instance(field.ty))
-            }
         }
     }
 

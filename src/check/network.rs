@@ -110,7 +110,9 @@ impl<'p> Checker<'p> {
                 self.report.push(problem.related(first, "the first is here"));
             }
             if !self.too_deep.contains(&(unit, index)) {
+                self.turns = rung.enabled.then_some(1);
                 let checked = self.rung(rung, index);
+                self.turns = None;
                 rungs.extend(rung.enabled.then_some(checked));
             }
         }
@@ -219,6 +221,7 @@ impl<'p> Checker<'p> {
 
     /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        self.weigh(1);
         match &element.kind {
             ElementKind::Block(call) => {
                 walk.active = true;
