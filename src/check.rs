@@ -76,6 +76,7 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         types: TypeTable::default(),
         units: Vec::new(),
         functions: unit::functions(program),
+        first_rungs: unit::first_rungs(program),
         scope: Scope::default(),
         registers: Resources::default(),
         direct: Direct::default(),
@@ -89,9 +90,11 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
+    checker.check_usage();
     let (tasks, programs) = checker.check_tasks();
     checker.check_sizes(&programs);
     checker.check_unused();
+    checker.check_unused_units();
     let Checker { report, scope, types, units, .. } = checker;
     let (runs, diagnostics) = report.finish();
     let checked = runs.then(|| {
@@ -120,6 +123,8 @@ struct Checker<'p> {
     units: Vec<Signature>,
     /// The functions among them, by their names.
     functions: HashMap<String, UnitId>,
+    /// How many rungs stand before those of each unit.
+    first_rungs: Vec<usize>,
     scope: Scope,
     registers: Resources,
     direct: Direct,

@@ -430,8 +430,10 @@ impl Checker<'_> {
 
     pub(super) fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
         let around = std::mem::replace(&mut walk.in_pin, true);
+        let loops = std::mem::take(&mut self.loops);
         let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
         walk.in_pin = around;
+        self.loops = loops;
         checked
     }
 

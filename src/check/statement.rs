@@ -26,6 +26,7 @@ impl Checker<'_> {
             StatementKind::Assignment { target, value } => self.assign(target, value),
             StatementKind::Call(call) => self.call(call, statement.span, false, walk).map(Boxed::statement),
             StatementKind::If { branches, otherwise } => {
+                let around = std::mem::replace(&mut walk.conditional, true);
                 let mut checked = Vec::with_capacity(branches.len());
                 for branch in branches {
                     let condition = self.value(&branch.condition, Elementary::Bool);
@@ -33,6 +34,7 @@ impl Checker<'_> {
                     checked.extend(condition.map(|condition| (condition, body)));
                 }
                 let otherwise = self.statements(otherwise, walk);
+                walk.conditional = around;
                 Some(Statement::If { branches: checked, otherwise })
             }
             StatementKind::Case { selector, branches, otherwise } => self.case(selector, branches, otherwise, walk),
@@ -47,6 +49,10 @@ impl Checker<'_> {
                 None
             }
             StatementKind::Exit => Some(Statement::Exit),
+            StatementKind::Return if walk.in_pin => {
+                self.jump_in_pin(statement.span);
+                None
+            }
             StatementKind::Return => Some(Statement::Return),
         }
     }
@@ -116,12 +122,14 @@ impl Checker<'_> {
             let problem = Diagnostic::new(Code::TypeMismatch, selector.span, "CASE compares integers");
             self.report.push(problem.hint("use IF for other conditions"));
         }
+        let around = std::mem::replace(&mut walk.conditional, true);
         let mut checked = Vec::with_capacity(branches.len());
         for branch in branches {
             let labels: Vec<(Value, Value)> = branch.labels.iter().filter_map(|label| self.label(label, ty?)).collect();
             checked.push((labels, self.statements(&branch.body, walk)));
         }
         let otherwise = self.statements(otherwise, walk);
+        walk.conditional = around;
         let selector = self.coerce(operand?, ty?, selector.span)?;
         Some(Statement::Case { selector, branches: checked, otherwise })
     }

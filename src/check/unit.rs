@@ -5,7 +5,9 @@ use std::ops::Range;
 
 use super::Checker;
 use super::model::{Rung, Unit, UnitId, VariableId};
-use crate::ladder::{self, Name, UnitKind, VariableClass};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::ladder::functions::Function;
+use crate::ladder::{self, Name, Origin, UnitKind, VariableClass};
 use crate::source::Span;
 
 /// The most elements, statements and operators that all calls and loops together may write out.
@@ -72,6 +74,32 @@ impl Checker<'_> {
         }
     }
 
+    /// Reports functions of the program that hide standard ones; another tool may have meant that.
+    pub(super) fn check_function_names(&mut self) {
+        for unit in &self.program.units {
+            let hides =
+                matches!(unit.kind, UnitKind::Function { .. }) && Function::from_name(&unit.name.text).is_some();
+            if hides && self.program.origin == Origin::Native {
+                let message = format!("there is a standard function `{}` already", unit.name.text);
+                self.report.push(Diagnostic::new(Code::DuplicateName, unit.name.span, message));
+            }
+        }
+    }
+
+    /// Reports blocks and functions that nothing calls.
+    pub(super) fn check_unused_units(&mut self) {
+        for (index, (unit, signature)) in (0..).zip(self.program.units.iter().zip(&self.units)) {
+            let is_used = matches!(unit.kind, UnitKind::Program { .. })
+                || signature.used
+                || self.types.named_units.contains(&UnitId(index));
+            if !is_used && !unit.name.text.starts_with('_') {
+                let message = format!("nothing calls `{}`", unit.name.text);
+                let problem = Diagnostic::new(Code::UnusedName, unit.name.span, message);
+                self.report.push(problem.hint("a name that starts with `_` may stay unused"));
+            }
+        }
+    }
+
     /// The function of that name that the program declares.
     pub(super) fn function_unit(&self, name: &Name) -> Option<UnitId> {
         if self.functions.is_empty() { None } else { self.functions.get(&name.key()).copied() }
@@ -130,4 +158,14 @@ pub(super) fn functions(program: &ladder::Program) -> HashMap<String, UnitId> {
         }
     }
     functions
+}
+
+/// How many rungs stand before those of each unit.
+pub(super) fn first_rungs(program: &ladder::Program) -> Vec<usize> {
+    let before = |so_far: &mut usize, unit: &ladder::Unit| {
+        let first = *so_far;
+        *so_far += unit.rungs.len();
+        Some(first)
+    };
+    program.units.iter().scan(0, before).collect()
 }
