@@ -29,6 +29,7 @@ mod jump;
 mod model;
 mod network;
 mod place;
+mod register;
 mod report;
 mod scope;
 mod size;

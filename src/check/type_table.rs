@@ -132,6 +132,15 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether a function block has the name of a type, which was reported.
+    pub(super) fn is_type_twice(&self, name: &Name) -> bool {
+        let is_own = |unit: &ladder::Unit| unit.name.span == name.span;
+        match self.types.named.get(&name.key()) {
+            Some(Named::Known((Type::Unit(unit), _))) => !is_own(&self.program.units[unit.index()]),
+            _ => true,
+        }
+    }
+
     /// Resolves the declared types that nothing named, too, so that their faults are found.
     pub(super) fn resolve_types(&mut self) {
         for declared in &self.program.types {

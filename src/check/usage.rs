@@ -3,8 +3,9 @@
 //! that of too many findings the same ones are kept in every run.
 
 use super::Checker;
-use super::model::{Index, Place, Step, VariableId};
+use super::model::{Place, VariableId};
 use super::network::Walk;
+use super::register::is_constant;
 use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{CoilKind, VariableClass};
@@ -64,11 +65,7 @@ impl Checker<'_> {
     }
 
     fn key(&self, place: &Place) -> Option<Key> {
-        let computed = |step: &Step| match step {
-            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
-            _ => false,
-        };
-        if place.path.iter().any(computed) {
+        if !is_constant(place) {
             return None;
         }
         let path = if place.path.is_empty() { String::new() } else { format!("{:?}", place.path) };
