@@ -71,6 +71,7 @@ codes! {
     BadLiteral = 205 Error "a literal that cannot be read",
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
+    UnboundedLoop = 208 Error "a loop without a constant number of times",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",

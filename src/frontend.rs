@@ -4,6 +4,7 @@
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
 pub mod native;
+mod text;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
