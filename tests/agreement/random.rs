@@ -160,20 +160,33 @@ fn run(program: &Program, seed: u64) -> Result<(), Failure> {
 fn report(program: &Program, seed: u64) -> String {
     let Err(mut failure) = run(program, seed) else { return format!("seed {seed}: it fails only sometimes") };
     let mut smallest = program.clone();
-    let mut place = smallest.units[0].rungs.len();
-    while place > 0 {
-        place -= 1;
-        let mut smaller = smallest.clone();
-        smaller.units[0].rungs.remove(place);
-        match run(&smaller, seed) {
-            Err(same) if same.heading == failure.heading && failure.heading != "it does not check" => {
-                (smallest, failure) = (smaller, same);
+    for unit in 0..smallest.units.len() {
+        for place in (0..smallest.units[unit].rungs.len()).rev() {
+            let mut smaller = smallest.clone();
+            smaller.units[unit].rungs.remove(place);
+            keep_if_same(&mut smallest, smaller, &mut failure, seed);
+        }
+        for rung in 0..smallest.units[unit].rungs.len() {
+            let elements = smallest.units[unit].rungs[rung].circuit.branches[0].elements.len();
+            for element in (0..elements).rev() {
+                let mut smaller = smallest.clone();
+                smaller.units[unit].rungs[rung].circuit.branches[0].elements.remove(element);
+                keep_if_same(&mut smallest, smaller, &mut failure, seed);
             }
-            _ => {}
         }
     }
     let Failure { heading, particulars } = failure;
     format!("seed {seed}: {heading}\n{particulars}\n{}", native::print(&smallest))
+}
+
+/// Goes on with a smaller program if it is wrong in the same way.
+fn keep_if_same(smallest: &mut Program, smaller: Program, failure: &mut Failure, seed: u64) {
+    match run(&smaller, seed) {
+        Err(same) if same.heading == failure.heading && failure.heading != "it does not check" => {
+            (*smallest, *failure) = (smaller, same);
+        }
+        _ => {}
+    }
 }
 
 /// The rungs that write a variable or call an instance.
@@ -217,4 +230,22 @@ fn elements(circuit: &Circuit, visit: &mut impl FnMut(&Element)) {
             _ => {}
         }
     }
+}
+
+#[test]
+fn zz_checks() {
+    let mut counts = std::collections::BTreeMap::<String, (u64, u64)>::new();
+    let mut failed = 0;
+    for seed in seeds() {
+        let program = random_program(seed);
+        if let Err(problems) = checked(&program) {
+            failed += 1;
+            for line in problems.lines().filter(|line| line.starts_with("error")) {
+                let entry = counts.entry(line.to_owned()).or_insert((0, seed));
+                entry.0 += 1;
+            }
+        }
+    }
+    println!("failed {failed}"); if let Ok(text) = std::env::var("SHOW") { let seed: u64 = text.parse().unwrap(); let p = random_program(seed); let text = native::print(&p); let source = Source::new("x", text.as_str()); let parsed = frontend::parse(&source); println!("{}", rung::diagnostic::render(&source, &parsed.diagnostics)); let (_, d) = rung::check::check(&parsed.program); println!("{}", rung::diagnostic::render(&source, &d.into_iter().filter(|d| d.is_error()).collect::<Vec<_>>())); if let Err(e) = checked(&p) { println!("{}", e.split("\n\n").filter(|p| p.starts_with("error")).collect::<Vec<_>>().join("\n")); } }
+    for (line, (n, seed)) in counts { println!("{n} (seed {seed}) {line}"); }
 }
