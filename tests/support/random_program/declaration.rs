@@ -7,6 +7,11 @@ use rung::ladder::{Address, Area, Root, TypeReference, Variable, VariableClass, 
 use super::{Entry, Generator, Instance};
 use crate::support::drawing;
 
+/// Registers that blocks use in chains.
+pub(super) const REGISTERS: &str = "registers";
+/// How many there are.
+pub(super) const REGISTER_COUNT: u32 = 8;
+
 impl Generator {
     pub(super) fn declare(&mut self) {
         use VariableClass::{Constant, Input, Memory, Output};
@@ -26,6 +31,8 @@ impl Generator {
                 }
             }
         }
+        let registers = drawing::array(Memory, REGISTERS, REGISTER_COUNT, Elementary::Word);
+        self.program.units[0].variables.push(registers);
         if self.dice.percent(8) {
             // Names that need back quotes, or look like something else.
             let odd = *self.dice.pick(&["Füllstand 1", "rung", "S", "T", "x.y", "AND", "1st"]);
