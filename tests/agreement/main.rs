@@ -4,6 +4,7 @@ mod elements;
 mod examples;
 mod jumps;
 mod random;
+mod register_machine;
 mod steps;
 mod straight_line;
 
