@@ -204,6 +204,12 @@ impl Checker<'_> {
         matches!(unit, None | Some(UnitKind::Program { .. }))
     }
 
+    /// Whether names are now those of a function, which remembers nothing.
+    pub(super) fn in_function(&self) -> bool {
+        let unit = self.scope.unit().map(|unit| &self.program.units[unit.index()].kind);
+        matches!(unit, Some(UnitKind::Function { .. }))
+    }
+
     /// What a declaration declares, of which its address may be the part that says so.
     fn effective_class(&mut self, declared: &ladder::Variable) -> VariableClass {
         let Some(address) = &declared.address else { return declared.class };

@@ -7,13 +7,14 @@
 use std::collections::HashMap;
 
 use super::expression::constant;
+use super::function_box::Boxed;
 use super::jump::Labels;
 use super::model::{self, NodeId, Place, UnitId};
 use super::report::clipped;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ContactKind, ElementKind, Name, Reference, Rung};
+use crate::ladder::{self, CoilKind, ContactKind, ElementKind, Name, Reference, Rung};
 use crate::source::Span;
 
 /// What is known of the power at a point.
@@ -222,7 +223,7 @@ impl<'p> Checker<'p> {
             ElementKind::Block(call) => {
                 walk.active = true;
                 let call = self.call(call, element.span, true, walk);
-                (call.map(model::Element::Call), Power::Maybe)
+                (call.map(Boxed::element), Power::Maybe)
             }
             ElementKind::Parallel(circuit) => {
                 let (circuit, right) = self.circuit(circuit, left, walk);
@@ -240,6 +241,8 @@ impl<'p> Checker<'p> {
     ) -> (Option<model::Element>, Power) {
         match &element.kind {
             ElementKind::Contact { kind, operand } => {
+                let is_edge = matches!(kind, ContactKind::Rising | ContactKind::Falling);
+                self.check_edge(is_edge, "a contact", element.span);
                 let operand = self.value(operand, Elementary::Bool);
                 let blocks = operand.as_ref().and_then(model::Expression::constant).is_some_and(|value| {
                     // An edge of what never is so does not come either.
@@ -258,6 +261,7 @@ impl<'p> Checker<'p> {
                 (condition.map(model::Element::Condition), right)
             }
             ElementKind::Coil { kind, target } => {
+                self.check_edge(matches!(kind, CoilKind::Rising | CoilKind::Falling), "a coil", element.span);
                 walk.effect(left);
                 let target = self.coil_target(target);
                 if let Some(target) = &target {
@@ -283,6 +287,15 @@ impl<'p> Checker<'p> {
             }
             ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
             ElementKind::Block(_) | ElementKind::Parallel(_) => (None, left),
+        }
+    }
+
+    /// Reports an edge in a function, which has no memory for it.
+    fn check_edge(&mut self, is_edge: bool, what: &str, span: Span) {
+        if is_edge && self.in_function() {
+            let message = format!("a function remembers nothing, and {what} for an edge does");
+            let problem = Diagnostic::new(Code::NoMemoryHere, span, message);
+            self.report.push(problem.hint("declare a function block instead, which has instances"));
         }
     }
 

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A chunk that [calls helpers](Chunk::calls_helpers) takes one argument more, behind the last base: a pointer to the
-//! table of them, such as [`Table`](super::helpers::Table).
+//! table of them: [`HELPERS`](super::helpers::HELPERS), and one at [`COPY`](super::helpers::COPY).
 //!
 //! Code is straight line: it must never branch on data, but for the operations in [`BRANCHING`]. Helpers do, and take
 //! a time that depends on their operands. It computes exactly what [`evaluate`](crate::logic::evaluate) says, with

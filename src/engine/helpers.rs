@@ -1,26 +1,13 @@
 //! The table of helpers that compiled chunks call: C functions on LREALs, each computing what
-//! [`evaluate::helper`] says, and one that copies long arrays. Nothing may be computed here.
+//! [`evaluate::helper`] says, and behind them one that copies long arrays. Nothing may be computed here.
 
 use crate::logic::{Helper, evaluate};
 
 /// A helper as chunks call it. One that takes a single operand does not look at the second.
 pub type HelperFunction = extern "C" fn(f64, f64) -> f64;
 
-/// The function that copies long arrays: so many bytes to the first pointer from the second. Both point to as many, which
-/// are the same or apart.
-pub type CopyFunction = unsafe extern "C" fn(*mut u8, *const u8, usize);
-
-/// The table: one pointer after another.
-#[derive(Debug)]
-#[repr(C)]
-pub struct Table {
-    /// In the order of [`Helper::ALL`].
-    pub functions: [HelperFunction; Helper::ALL.len()],
-    /// Behind them.
-    pub copy: CopyFunction,
-}
-
-/// The place of [`Table::copy`], counted in pointers.
+/// The place in the table of the function that copies long arrays, counted in pointers: behind the others. It is given
+/// two pointers, to and from as many bytes as a third number says, which are the same or apart.
 pub const COPY: usize = Helper::ALL.len();
 
 macro_rules! table {

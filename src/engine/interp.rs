@@ -5,6 +5,7 @@
 //! gates, of which a whole run executes without a branch; loads, stores, constants and negations cost nothing of
 //! their own. All else becomes steps with cells as operands. Neither may know any block.
 
+mod access;
 mod gate;
 mod step;
 mod textbook;

@@ -521,6 +521,35 @@ section 1 line 15 "r20"
     }
 
     #[test]
+    fn tasks_stand_before_their_sections_also_those_without_any() {
+        let mut layout = LayoutBuilder::new();
+        let (ty, initial) = (Elementary::Time, Value::time(0));
+        let name = "#task fast".to_owned();
+        let due = layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
+        let mut builder = Builder::new("p", layout.finish(None).unwrap());
+        builder.end_task("none", None, None);
+        builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+        builder.end_task("fast", Some(10_000_000), Some(due));
+        builder.end_section(Origin { label: "r2".to_owned(), line: 2 });
+        builder.end_task("", None, None);
+        builder.end_task("last", None, None);
+        let program = builder.finish();
+        let text = print(&program);
+        let from = text.find("\ntask").unwrap() + 1;
+        let expected = r#"task "none"
+task "fast" every T#10ms due s0
+chunk
+section 0 line 1 "r1"
+task ""
+chunk
+section 1 line 2 "r2"
+task "last"
+"#;
+        assert_eq!(&text[from..], expected);
+        assert_eq!(read(&text), Ok(program));
+    }
+
+    #[test]
     fn origins_that_no_section_has_or_several_share_are_kept() {
         let mut program = small();
         program.origins.push(Origin { label: "gone".to_owned(), line: 0 });

@@ -9,9 +9,11 @@ use std::time::{Duration, Instant};
 use rung_runtime::Scan;
 use rung_runtime::host::{Histogram, Statistics};
 
+use super::super::tasks;
 use super::machine::{Change, Machine};
 use super::points::{Point, shown};
 use super::{Failure, print, time};
+use crate::logic::image::FAULT;
 
 /// Lines in a second about one variable, and about all of them.
 const MOST_OF_ONE: u32 = 10;
@@ -68,6 +70,9 @@ impl Second {
         }
         self.lines += 1;
         let name = &told.get(change.index)?.name;
+        if name == FAULT {
+            return Some(format!("{}  {}\n", moment(change.now), tasks::FAULT));
+        }
         Some(format!("{}  {name} = {}\n", moment(change.now), shown(change.value)))
     }
 }

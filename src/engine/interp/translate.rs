@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
+use super::access::Accesses;
 use super::gate::{Function, Gate, compare};
 use super::step::{Kind, Step};
 use super::{Interpreter, Part};
@@ -65,7 +66,7 @@ impl<'a> Translator<'a> {
         let count = program.instructions.len();
         let mut uses = vec![0; count];
         let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
-        let mut last_access = vec![0; program.layout.slots().len()];
+        let mut accesses = Accesses::new(&program.layout);
         // The time comes right behind the image, and then a FALSE.
         let mut cells = vec![0; (program.layout.size() + 2 * CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
@@ -74,17 +75,20 @@ impl<'a> Translator<'a> {
                 uses[operand.index()] += 1;
             }
             match instruction.op {
-                Op::Load(slot) => last_access[slot.index()] = index + 1,
+                Op::Load(slot) => {
+                    accesses.slot(slot, index + 1);
+                }
                 Op::Store(slot, value) => {
                     first_store[value.index()].get_or_insert(index);
-                    access_before[index] = std::mem::replace(&mut last_access[slot.index()], index + 1);
+                    access_before[index] = accesses.slot(slot, index + 1);
                 }
                 Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => {
-                    last_access[program.layout.array(array).indices()].fill(index + 1);
+                    accesses.array(array, &program.layout, index + 1);
                 }
                 Op::CopyArray(to, from, _) => {
-                    last_access[program.layout.array(to).indices()].fill(index + 1);
-                    last_access[program.layout.array(from).indices()].fill(index + 1);
+                    for array in [to, from] {
+                        accesses.array(array, &program.layout, index + 1);
+                    }
                 }
                 Op::Constant(bits) if instruction.ty != Elementary::Bool => {
                     constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {

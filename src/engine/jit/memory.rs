@@ -9,13 +9,20 @@ use std::ops::Range;
 use memmap2::{Mmap, MmapMut};
 
 use crate::engine::clif::{BASES, Chunk};
-use crate::engine::helpers::{HELPERS, Table};
+use crate::engine::helpers::{COPY, HELPERS, HelperFunction};
 
 /// The type of a chunk's function: the image at each base, with the time second.
 type Function = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8);
 
 /// The type of the function of a chunk that calls helpers: it takes the table of them, too.
 type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const Table);
+
+/// The table of helpers, as chunks expect it.
+#[repr(C)]
+struct Table {
+    functions: [HelperFunction; COPY],
+    copy: unsafe extern "C" fn(*mut u8, *const u8, usize),
+}
 
 /// What chunks that call helpers are given.
 static TABLE: Table = Table { functions: HELPERS, copy };

@@ -200,6 +200,59 @@ fn a_chunk_that_needs_too_many_values_at_one_time_is_refused_at_once() {
     }
 }
 
+/// A program of three tasks, which each count their runs: every 10 ns, every 25 ns, and always.
+fn counting() -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str, ty| {
+        let (name, initial) = (name.to_owned(), Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 })
+    };
+    let runs = ["fast", "slow", "always"].map(|name| slot(name, Elementary::Lint));
+    let due = ["#task fast", "#task slow"].map(|name| slot(name, Elementary::Time));
+    let mut logic = Builder::new("counting", layout.finish(None).expect("a small image"));
+    let tasks = [("fast", Some(10), Some(due[0])), ("slow", Some(25), Some(due[1])), ("", None, None)];
+    for (runs, (name, interval, due)) in runs.into_iter().zip(tasks) {
+        let (before, one) = (logic.load(runs), logic.constant(Value::from_bits(Elementary::Lint, 1)));
+        let after = logic.binary(Binary::Add, before, one);
+        logic.store(runs, after);
+        logic.end_section(Origin { label: "r".into(), line: 1 });
+        logic.end_task(name, interval, due);
+    }
+    logic.finish()
+}
+
+#[test]
+fn every_engine_runs_the_tasks_that_are_due_and_no_other() {
+    let program = counting();
+    let optimised = opt::optimise(program.clone());
+    let engines: [Box<dyn Scan>; 4] = [
+        Box::new(Textbook::new(&program)),
+        Box::new(Interpreter::new(&program)),
+        Box::new(compile(&program)),
+        Box::new(compile(&optimised)),
+    ];
+    // By the time of each round: how often each task has run after it, and when the two are due next.
+    let rounds = [
+        (-5, [0, 0, 1, 0, 0]),
+        (0, [1, 1, 2, 10, 25]),
+        (9, [1, 1, 3, 10, 25]),
+        (10, [2, 1, 4, 20, 25]),
+        (10, [2, 1, 5, 20, 25]),
+        (47, [3, 2, 6, 50, 50]),
+        (50, [4, 3, 7, 60, 75]),
+        (i64::MAX, [5, 4, 8, i64::MAX, i64::MAX]),
+    ];
+    for mut engine in engines {
+        let mut image = program.layout.initial_image();
+        for (now, expected) in rounds {
+            engine.scan(&mut image, now);
+            let found: Vec<i64> =
+                program.layout.slots().iter().map(|slot| slot.read(&image).bits().cast_signed()).collect();
+            assert_eq!(found, expected, "at {now}");
+        }
+    }
+}
+
 /// A program that copies an array of `count` elements to the one behind it while its first slot is TRUE, and its type.
 fn copying(ty: Elementary, count: u32) -> Program {
     let mut layout = LayoutBuilder::new();
