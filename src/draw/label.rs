@@ -7,7 +7,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::ladder::{
     BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, ElementKind, Expression, ExpressionKind,
-    Literal, Reference, Root, Step, UnaryOperator, Wire,
+    Literal, Reference, Root, Step, TypeReference, UnaryOperator, Wire,
 };
 
 /// What stands for that which was cut.
@@ -92,6 +92,21 @@ pub(super) fn expression(expression: &Expression, limit: usize) -> String {
     let mut writer = Writer::new(limit);
     writer.expression(expression, 0);
     cut_end(&writer.text, limit)
+}
+
+/// A type, cut in its middle.
+pub(super) fn type_reference(ty: &TypeReference, limit: usize) -> String {
+    if ty.dimensions.is_empty() {
+        return cut_name(&ty.name.text, limit);
+    }
+    let mut writer = Writer::new(limit);
+    writer.push("array [");
+    writer.list(&ty.dimensions, |writer, dimension| {
+        writer.expression(&dimension.first, 0);
+        writer.push("..");
+        writer.expression(&dimension.last, 0);
+    });
+    cut_name(&format!("{}] of {}", writer.text, ty.name.text), limit)
 }
 
 /// `target := value`, cut at its end.

@@ -1,12 +1,13 @@
-//! The page: the program's name, its declarations, and the rungs below each other with their titles and comments.
+//! The page: the program's name, what it declares, and unit by unit its declarations and the rungs below each other with
+//! their titles and comments.
 
 use super::grid::Grid;
-use super::label;
+use super::{label, overview};
 use super::network::networks;
 use super::place::picture;
 use super::shape::Picture;
 use super::symbol::{InstanceTypes, Limits};
-use crate::ladder::{Comment, Program, Rung, Variable, VariableClass};
+use crate::ladder::{Comment, Program, Rung, Unit, Variable, VariableClass};
 
 /// The columns of the declarations.
 const HEADINGS: [&str; 6] = ["class", "name", "type", "address", "initial", "retain"];
@@ -25,6 +26,17 @@ const MARGINS: usize = 8;
 pub(super) struct Page {
     /// The program's name, cut to the width.
     pub(super) title: String,
+    /// Types, tasks, and what else stands outside the units, line by line.
+    pub(super) overview: Vec<String>,
+    /// The variables that all units see.
+    pub(super) globals: Table,
+    pub(super) units: Vec<UnitPicture>,
+}
+
+/// One unit laid out.
+pub(super) struct UnitPicture {
+    /// What it is and its name, cut to the width; empty where the title of the page says it.
+    pub(super) heading: String,
     pub(super) declarations: Table,
     pub(super) rungs: Vec<RungPicture>,
 }
@@ -53,35 +65,61 @@ pub(super) struct RungPicture {
 impl Page {
     /// Lays out a program for so many columns.
     pub(super) fn of(program: &Program, width: usize) -> Self {
-        let unit = &program.units[0];
-        let types = InstanceTypes::of(program);
         let limits = Limits::within(width.saturating_sub(MARGINS));
-        let grids: Vec<Vec<Grid>> = unit
-            .rungs
-            .iter()
-            .map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(|net| Grid::new(net, width)).collect())
-            .collect();
+        let networks = |unit: &Unit| -> Vec<Vec<Grid>> {
+            let types = InstanceTypes::of(program, unit);
+            let grid = |net| Grid::new(net, width);
+            unit.rungs.iter().map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(grid).collect()).collect()
+        };
+        let grids: Vec<Vec<Vec<Grid>>> = program.units.iter().map(networks).collect();
         // All right rails stand in one column, but for rungs with an element too wide for the page.
-        let fitting = grids.iter().flatten().map(Grid::total_columns).filter(|columns| *columns <= width);
+        let fitting = grids.iter().flatten().flatten().map(Grid::total_columns).filter(|columns| *columns <= width);
         let columns = fitting.max().unwrap_or(0);
         // Prose is not drawn out far beyond the rungs.
         let prose = columns.max(READABLE).min(width);
-        let mut comments = Comments { rest: &program.comments, from: declarations_end(program) };
-        let rungs = unit
-            .rungs
+        let overview: Vec<String> = overview::lines(program).iter().flat_map(|line| wrap(line, prose)).collect();
+        let globals = Table::of(&program.globals, Some("global"), width);
+        let mut units: Vec<UnitPicture> = program
+            .units
             .iter()
             .zip(grids)
-            .enumerate()
-            .map(|(index, (rung, grids))| RungPicture {
-                comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, prose - 3)).collect(),
-                heading: heading(rung, index, prose),
-                enabled: rung.enabled,
-                picture: picture(grids, columns).ok_or_else(|| label::cut_end("(too large to draw)", width)),
-            })
+            .map(|(unit, grids)| unit_picture(program, unit, grids, Columns { width, rails: columns, prose }))
             .collect();
-        let title = label::cut_end(&format!("program {}", program.name.text), width);
-        Self { title, declarations: Table::of(&unit.variables, width), rungs }
+        let mut title = label::cut_end(&format!("program {}", program.name.text), width);
+        if let [only] = units.as_mut_slice()
+            && overview.is_empty()
+            && globals.rows.is_empty()
+        {
+            title = std::mem::take(&mut only.heading);
+        }
+        Self { title, overview, globals, units }
     }
+}
+
+/// How wide things are.
+#[derive(Clone, Copy)]
+struct Columns {
+    width: usize,
+    rails: usize,
+    prose: usize,
+}
+
+fn unit_picture(program: &Program, unit: &Unit, grids: Vec<Vec<Grid>>, columns: Columns) -> UnitPicture {
+    let mut comments = Comments { rest: &program.comments, from: declarations_end(unit) };
+    let rungs = unit
+        .rungs
+        .iter()
+        .zip(grids)
+        .enumerate()
+        .map(|(index, (rung, grids))| RungPicture {
+            comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, columns.prose - 3)).collect(),
+            heading: heading(rung, index, columns.prose),
+            enabled: rung.enabled,
+            picture: picture(grids, columns.rails).ok_or_else(|| label::cut_end("(too large to draw)", columns.width)),
+        })
+        .collect();
+    let heading = label::cut_end(&overview::unit(unit), columns.width);
+    UnitPicture { heading, declarations: Table::of(&unit.variables, None, columns.width), rungs }
 }
 
 fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
@@ -100,10 +138,9 @@ fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
 }
 
 /// Where the declarations end, as far as they stand before the first rung.
-fn declarations_end(program: &Program) -> u32 {
-    let unit = &program.units[0];
+fn declarations_end(unit: &Unit) -> u32 {
     let first = unit.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
-    let ends = unit.variables.iter().map(|variable| variable.span.end).chain([program.name.span.end]);
+    let ends = unit.variables.iter().map(|variable| variable.span.end).chain([unit.name.span.end]);
     ends.filter(|end| *end <= first).max().unwrap_or(0)
 }
 
@@ -159,11 +196,12 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
 }
 
 impl Table {
-    fn of(variables: &[Variable], width: usize) -> Self {
+    /// A table of variables, all of one class in words or each of its own.
+    fn of(variables: &[Variable], class: Option<&str>, width: usize) -> Self {
         if variables.is_empty() {
             return Self { starts: Vec::new(), rows: Vec::new() };
         }
-        let mut rows: Vec<[String; 6]> = variables.iter().map(row).collect();
+        let mut rows: Vec<[String; 6]> = variables.iter().map(|variable| row(variable, class)).collect();
         let says_something: Vec<usize> =
             (0..HEADINGS.len()).filter(|column| rows.iter().any(|row| !row[*column].is_empty())).collect();
         rows.insert(0, HEADINGS.map(str::to_owned));
@@ -198,8 +236,8 @@ impl Table {
     }
 }
 
-fn row(variable: &Variable) -> [String; 6] {
-    let class = match variable.class {
+fn row(variable: &Variable, class: Option<&str>) -> [String; 6] {
+    let own = match variable.class {
         VariableClass::Input => "input",
         VariableClass::Output => "output",
         VariableClass::Memory => "var",
@@ -208,9 +246,9 @@ fn row(variable: &Variable) -> [String; 6] {
         VariableClass::Temporary => "temp",
     };
     [
-        class.to_owned(),
+        class.filter(|_| variable.class == VariableClass::Memory).unwrap_or(own).to_owned(),
         label::cut_name(&variable.name.text, WIDEST_COLUMN),
-        variable.ty.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::cut_name(&ty.name.text, WIDEST_COLUMN)),
+        variable.ty.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::type_reference(ty, WIDEST_COLUMN)),
         variable.address.as_ref().map_or_else(String::new, ToString::to_string),
         variable.initial.as_ref().map_or_else(String::new, |value| label::expression(value, WIDEST_COLUMN)),
         if variable.retain { "retain" } else { "" }.to_owned(),
