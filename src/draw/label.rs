@@ -65,6 +65,41 @@ pub(super) fn cut_end(text: &str, limit: usize) -> String {
     format!("{start}{CUT}")
 }
 
+/// Breaks a text into lines of at most `limit` columns, between words where possible.
+pub(super) fn wrap(text: &str, limit: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let paragraph = clean(paragraph);
+        let mut line = String::new();
+        let mut used = 0;
+        for (index, word) in paragraph.trim_end().split(' ').enumerate() {
+            let blank = usize::from(index > 0);
+            let mut word = word;
+            let mut columns = width(word);
+            if used + blank + columns <= limit {
+                line.extend((blank > 0).then_some(' '));
+                used += blank;
+            } else if used > 0 {
+                lines.push(std::mem::take(&mut line).trim_end().to_owned());
+                used = 0;
+            }
+            while columns > limit {
+                let start = start_of(word, limit);
+                if start.is_empty() {
+                    break;
+                }
+                lines.push(start.to_owned());
+                word = &word[start.len()..];
+                columns = columns.saturating_sub(width(start));
+            }
+            line.push_str(word);
+            used += columns;
+        }
+        lines.push(line.trim_end().to_owned());
+    }
+    lines
+}
+
 /// A name cut in its middle, since names differ at their ends as often as at their starts.
 pub(super) fn cut_name(text: &str, limit: usize) -> String {
     let text = clean(text);
@@ -333,7 +368,11 @@ impl Writer {
                 self.push("}");
             }
             ElementKind::Parallel(inner) => self.circuit(inner),
-            ElementKind::Statements(_) => self.push("{…}"),
+            ElementKind::Statements(_) => {
+                // They have a box of their own and no short form.
+                self.push("{…}");
+                self.incomplete = true;
+            }
             ElementKind::Block(call) => self.block(call),
             ElementKind::Jump { target } => self.push(&format!(">> {}", target.text)),
             ElementKind::Return => self.push(">> return"),

@@ -3,8 +3,8 @@
 //! One pass over the model, each element once. It must not recurse deeper than a fixed depth, whatever the model
 //! holds: a circuit nested deeper is drawn as a box with `…`.
 
-use super::{label, statements};
 use super::symbol::{InstanceTypes, Limits, Symbol, node_text};
+use super::{label, statements};
 use crate::ladder::{BlockCall, Branch, Circuit, ElementKind, Wire};
 
 /// How deep circuits are drawn one inside the other.
@@ -146,7 +146,9 @@ impl Builder<'_> {
         Part::Symbol(match element {
             ElementKind::Contact { kind, operand } => Symbol::contact(*kind, operand, limits),
             ElementKind::Coil { kind, target } => Symbol::coil(*kind, target, limits),
-            ElementKind::Condition(condition) => Symbol::boxed(vec![label::expression(condition, limits.expression)], false),
+            ElementKind::Condition(condition) => {
+                Symbol::boxed(vec![label::expression(condition, limits.expression)], false)
+            }
             ElementKind::Assignment { target, value } => {
                 Symbol::boxed(vec![label::assignment(target, value, limits.expression)], true)
             }

@@ -26,7 +26,8 @@ pub(super) fn lines(program: &Program) -> Vec<String> {
     let registers = program.registers.iter().map(|registers| format!("registers({})", settings(&registers.settings)));
     let tasks = program.tasks.iter().map(|task| {
         let settings = [("interval", &task.interval), ("priority", &task.priority)];
-        let settings = settings.map(|(name, value)| value.as_ref().map(|value| format!("{name}{}", initial(Some(value)))));
+        let settings =
+            settings.map(|(name, value)| value.as_ref().map(|value| format!("{name}{}", initial(Some(value)))));
         let settings: Vec<String> = settings.into_iter().flatten().collect();
         let name = &task.name.text;
         if settings.is_empty() { format!("task {name}") } else { format!("task {name}({})", settings.join(", ")) }

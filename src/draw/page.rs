@@ -2,11 +2,11 @@
 //! their titles and comments.
 
 use super::grid::Grid;
-use super::{label, overview};
 use super::network::networks;
 use super::place::picture;
 use super::shape::Picture;
 use super::symbol::{InstanceTypes, Limits};
+use super::{label, overview};
 use crate::ladder::{Comment, Program, Rung, Unit, Variable, VariableClass};
 
 /// The columns of the declarations.
@@ -69,7 +69,10 @@ impl Page {
         let networks = |unit: &Unit| -> Vec<Vec<Grid>> {
             let types = InstanceTypes::of(program, unit);
             let grid = |net| Grid::new(net, width);
-            unit.rungs.iter().map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(grid).collect()).collect()
+            unit.rungs
+                .iter()
+                .map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(grid).collect())
+                .collect()
         };
         let grids: Vec<Vec<Vec<Grid>>> = program.units.iter().map(networks).collect();
         // All right rails stand in one column, but for rungs with an element too wide for the page.
@@ -77,7 +80,7 @@ impl Page {
         let columns = fitting.max().unwrap_or(0);
         // Prose is not drawn out far beyond the rungs.
         let prose = columns.max(READABLE).min(width);
-        let overview: Vec<String> = overview::lines(program).iter().flat_map(|line| wrap(line, prose)).collect();
+        let overview: Vec<String> = overview::lines(program).iter().flat_map(|line| label::wrap(line, prose)).collect();
         let globals = Table::of(&program.globals, Some("global"), width);
         let mut units: Vec<UnitPicture> = program
             .units
@@ -112,7 +115,7 @@ fn unit_picture(program: &Program, unit: &Unit, grids: Vec<Vec<Grid>>, columns: 
         .zip(grids)
         .enumerate()
         .map(|(index, (rung, grids))| RungPicture {
-            comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, columns.prose - 3)).collect(),
+            comments: comments.before(rung).flat_map(|comment| label::wrap(&comment.text, columns.prose - 3)).collect(),
             heading: heading(rung, index, columns.prose),
             enabled: rung.enabled,
             picture: picture(grids, columns.rails).ok_or_else(|| label::cut_end("(too large to draw)", columns.width)),
@@ -134,7 +137,7 @@ fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
         heading.push_str("  ");
         heading.push_str(title);
     }
-    wrap(&heading, width)
+    label::wrap(&heading, width)
 }
 
 /// Where the declarations end, as far as they stand before the first rung.
@@ -158,41 +161,6 @@ impl<'a> Comments<'a> {
         (self.rest, self.from) = (rest, rung.span.end);
         before.iter().filter(move |comment| comment.own_line && comment.span.start >= from)
     }
-}
-
-/// Breaks a text into lines of at most `width` columns, between words where possible.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    for paragraph in text.lines() {
-        let paragraph = label::clean(paragraph);
-        let mut line = String::new();
-        let mut used = 0;
-        for (index, word) in paragraph.trim_end().split(' ').enumerate() {
-            let blank = usize::from(index > 0);
-            let mut word = word;
-            let mut columns = label::width(word);
-            if used + blank + columns <= width {
-                line.extend((blank > 0).then_some(' '));
-                used += blank;
-            } else if used > 0 {
-                lines.push(std::mem::take(&mut line).trim_end().to_owned());
-                used = 0;
-            }
-            while columns > width {
-                let start = label::start_of(word, width);
-                if start.is_empty() {
-                    break;
-                }
-                lines.push(start.to_owned());
-                word = &word[start.len()..];
-                columns = columns.saturating_sub(label::width(start));
-            }
-            line.push_str(word);
-            used += columns;
-        }
-        lines.push(line.trim_end().to_owned());
-    }
-    lines
 }
 
 impl Table {
@@ -231,7 +199,7 @@ impl Table {
     /// The declarations as lines, for a width that has no room for columns.
     fn without_columns(rows: &[[String; 6]], width: usize) -> Self {
         let words = |row: &[String; 6]| row.iter().filter(|cell| !cell.is_empty()).cloned().collect::<Vec<_>>();
-        let lines = rows.iter().flat_map(|row| wrap(&words(row).join(" "), width - GAP));
+        let lines = rows.iter().flat_map(|row| label::wrap(&words(row).join(" "), width - GAP));
         Self { starts: vec![GAP], rows: lines.map(|line| vec![line]).collect() }
     }
 }

@@ -7,12 +7,14 @@ use crate::ladder::{BlockCall, CaseLabel, Statement, StatementKind, Wire};
 
 /// How many lines a box has at most; the last says that there are more.
 const MOST_LINES: usize = 24;
+/// How many lines an expression may fill.
+const LINES_OF_EXPRESSION: usize = 4;
 /// Columns by which what is in a statement is indented.
 const INDENT: usize = 2;
 
-/// The lines of a box for statements, each of at most `limit` columns; at least one.
-pub(super) fn lines(statements: &[Statement], limit: usize) -> Vec<String> {
-    let mut writer = Writer { lines: Vec::new(), limit };
+/// The lines of a box for statements, each of at most so many columns; at least one.
+pub(super) fn lines(statements: &[Statement], columns: usize) -> Vec<String> {
+    let mut writer = Writer { lines: Vec::new(), columns, limit: columns * LINES_OF_EXPRESSION };
     writer.statements(statements, 0);
     if writer.lines.is_empty() {
         writer.lines.push(";".to_owned());
@@ -26,6 +28,8 @@ pub(super) fn lines(statements: &[Statement], limit: usize) -> Vec<String> {
 
 struct Writer {
     lines: Vec<String>,
+    columns: usize,
+    /// Columns of one expression, on as many lines as it takes.
     limit: usize,
 }
 
@@ -34,10 +38,11 @@ impl Writer {
         self.lines.len() > MOST_LINES
     }
 
+    /// A line, or several where it has no room on one.
     fn line(&mut self, text: &str, depth: usize) {
-        let indent = (depth * INDENT).min(self.limit / 2);
-        let text = label::cut_end(text, self.limit - indent);
-        self.lines.push(format!("{}{text}", " ".repeat(indent)));
+        let indent = (depth * INDENT).min(self.columns / 4);
+        let lines = label::wrap(text, self.columns - indent);
+        self.lines.extend(lines.into_iter().map(|line| format!("{}{line}", " ".repeat(indent))));
     }
 
     fn statements(&mut self, statements: &[Statement], depth: usize) {

@@ -219,7 +219,8 @@ pub(super) struct InstanceTypes<'a> {
 impl<'a> InstanceTypes<'a> {
     /// Those of a unit.
     pub(super) fn of(program: &'a Program, unit: &'a Unit) -> Self {
-        let typed = |variable: &'a Variable| (variable.name.key(), variable.ty.as_ref().map(|ty| ty.name.text.as_str()));
+        let typed =
+            |variable: &'a Variable| (variable.name.key(), variable.ty.as_ref().map(|ty| ty.name.text.as_str()));
         let is_function = |unit: &&Unit| matches!(unit.kind, UnitKind::Function { .. });
         Self {
             types: program.globals.iter().chain(&unit.variables).map(typed).collect(),
