@@ -22,7 +22,7 @@ mod storage;
 mod tests;
 mod walk;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rung::check::{Checked, Element, Task, Type, VariableId};
 use rung::elementary::{Elementary, Value};
@@ -42,8 +42,10 @@ pub(crate) struct Oracle<'a> {
     programs: Vec<Frame>,
     /// The storage of each variable with an address, by the first variable that stands at it.
     located: HashMap<VariableId, Storage>,
-    /// Every value of the globals, the programs and what is in them.
-    registers: Vec<Register>,
+    /// Every value of the globals, the programs and what is in them: all but those of calls of functions.
+    registers: HashSet<Register>,
+    /// Whether what runs is a function in an expression that is computed for nothing: it writes its own values only.
+    muted: bool,
     frames: u32,
     /// When each task is due next.
     due: Vec<i128>,
@@ -66,7 +68,8 @@ impl<'a> Oracle<'a> {
             globals: Frame::default(),
             programs: Vec::new(),
             located: HashMap::new(),
-            registers: Vec::new(),
+            registers: HashSet::new(),
+            muted: false,
             frames: 0,
             due: vec![0; checked.tasks().len()],
             fault: false,
@@ -170,6 +173,24 @@ impl<'a> Oracle<'a> {
     /// How often each element changed so far, in the order in which scans first came to them.
     pub(crate) fn activities(&self) -> &[Activity] {
         self.activities.all()
+    }
+
+    /// Writes a value that the program computed.
+    fn put(&self, target: &Storage, value: Value) {
+        if !self.is_muted(target) {
+            target.write(value);
+        }
+    }
+
+    /// Writes all of an array or structure, as [`Storage::copy`] does.
+    fn put_copy(&self, target: &Storage, source: &Storage) {
+        if !self.is_muted(target) {
+            target.copy(source);
+        }
+    }
+
+    fn is_muted(&self, target: &Storage) -> bool {
+        self.muted && target.values().iter().any(|register| self.registers.contains(register))
     }
 
     fn watched(&self, name: &str) -> &(Storage, Elementary) {

@@ -68,10 +68,10 @@ impl Oracle<'_> {
             failed = attempt.failed || divides_by_zero(call, &pins);
             for ((output, _), target) in call.outputs.iter().zip(targets) {
                 match output {
-                    Output::Eno => target.write(Value::bool(!failed)),
+                    Output::Eno => self.put(&target, Value::bool(!failed)),
                     Output::Pin(pin) => match &pins.outputs[*pin] {
-                        (storage, Type::Elementary(ty)) => target.write(storage.read(*ty)),
-                        (storage, _) => target.copy(storage),
+                        (storage, Type::Elementary(ty)) => self.put(&target, storage.read(*ty)),
+                        (storage, _) => self.put_copy(&target, storage),
                     },
                 }
             }
@@ -144,7 +144,7 @@ impl Oracle<'_> {
             Callee::Standard(_, place) => {
                 let storage = self.locate(frame, place, attempt);
                 for (pin, place) in &call.references {
-                    let registers = self.from_there_on(frame, place, attempt);
+                    let registers = self.behind(frame, place, attempt);
                     storage.block().borrow_mut().references[*pin] = registers;
                 }
                 storage.block().borrow_mut().execute(self.now);
@@ -183,7 +183,7 @@ impl Oracle<'_> {
         Frame { id: FrameId::default(), ..self.frame(self.checked.unit(unit).variables(), &[]) }
     }
 
-    /// What a function gives for its inputs. If it is not executed, what it wrote elsewhere is undone.
+    /// What a function gives for its inputs. If it is not executed, it writes nothing elsewhere.
     pub(super) fn result(
         &mut self,
         unit: UnitId,
@@ -191,24 +191,18 @@ impl Oracle<'_> {
         references: Vec<Storage>,
         executed: bool,
     ) -> Value {
-        let pins = {
-            let frame = self.fresh(unit);
-            self.pins_of(unit, frame)
-        };
+        let frame = self.fresh(unit);
+        let pins = self.pins_of(unit, frame);
         for (input, value) in pins.inputs.iter().zip(inputs) {
             if let Some(value) = value {
                 input.write(*value);
             }
         }
         let references: Vec<_> = self.checked.unit(unit).references.iter().copied().zip(references).collect();
-        let (fault, before): (bool, Vec<Value>) = (self.fault, self.registers.iter().map(Register::get).collect());
+        let muted = self.muted;
+        self.muted |= !executed;
         self.run(unit, &pins.frame.with(&references));
-        if !executed {
-            self.fault = fault;
-            for (register, value) in self.registers.iter().zip(before) {
-                register.set(value);
-            }
-        }
+        self.muted = muted;
         pins.values().next().expect("only a function with a result, which is a value, is an operand")
     }
 }

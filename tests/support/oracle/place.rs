@@ -45,7 +45,7 @@ impl Oracle<'_> {
     }
 
     /// The values from a place on to the end of the array that it is an element of; of what is no element itself.
-    pub(super) fn from_there_on(&mut self, frame: &Frame, place: &Place, attempt: &mut Attempt) -> Vec<Register> {
+    pub(super) fn behind(&mut self, frame: &Frame, place: &Place, attempt: &mut Attempt) -> Vec<Register> {
         let Some((Step::Element(indices), path)) = place.path.split_last() else {
             return self.locate(frame, place, attempt).values();
         };
@@ -108,7 +108,7 @@ impl Oracle<'_> {
     /// An index was out of range.
     fn fails(&mut self, attempt: &mut Attempt) {
         attempt.failed = true;
-        self.fault |= attempt.executed;
+        self.fault |= attempt.executed && !self.muted;
     }
 
     /// What a place holds now.

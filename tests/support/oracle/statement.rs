@@ -23,12 +23,14 @@ impl Oracle<'_> {
         match statement {
             Statement::Assignment { target, value } => {
                 let value = self.value(&walk.frame, value, attempt);
-                self.locate(&walk.frame, target, attempt).write(value);
+                let target = self.locate(&walk.frame, target, attempt);
+                self.put(&target, value);
                 self.did(walk, statement, "statement a := b");
             }
             Statement::Copy { target, source } => {
                 let source = self.locate(&walk.frame, source, attempt);
-                self.locate(&walk.frame, target, attempt).copy(&source);
+                let target = self.locate(&walk.frame, target, attempt);
+                self.put_copy(&target, &source);
                 self.did(walk, statement, "statement a := b of many");
             }
             Statement::Call(call) => {
@@ -60,14 +62,16 @@ impl Oracle<'_> {
                 let after = |times: u32| wrapped(first.ty(), number(*first) + i128::from(times) * step);
                 self.did(walk, statement, "statement FOR");
                 for time in 0..*count {
-                    self.locate(&walk.frame, variable, attempt).write(after(time));
+                    let variable = self.locate(&walk.frame, variable, attempt);
+                    self.put(&variable, after(time));
                     match self.statements(walk, body, attempt) {
                         Ok(()) => {}
                         Err(Leave::Loop) => return Ok(()),
                         Err(leave) => return Err(leave),
                     }
                 }
-                self.locate(&walk.frame, variable, attempt).write(after(*count));
+                let variable = self.locate(&walk.frame, variable, attempt);
+                self.put(&variable, after(*count));
             }
             Statement::Exit => {
                 self.did(walk, statement, "statement EXIT");

@@ -2,6 +2,7 @@
 //! stand for one.
 
 use std::cell::{Cell, RefCell};
+use std::hash::{Hash, Hasher};
 use std::rc::Rc;
 
 use rung::check::{Initial, PinId, Step, Type, VariableId};
@@ -14,6 +15,21 @@ use super::block::Instance;
 /// One value. A clone is the same one.
 #[derive(Clone, Debug)]
 pub(crate) struct Register(Rc<Cell<Value>>);
+
+/// Two that hold the same are not therefore one.
+impl PartialEq for Register {
+    fn eq(&self, other: &Self) -> bool {
+        Rc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Eq for Register {}
+
+impl Hash for Register {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        Rc::as_ptr(&self.0).hash(state);
+    }
+}
 
 impl Register {
     /// One that starts with a value, and stays of its type.
@@ -113,17 +129,17 @@ impl Storage {
         }
     }
 
-    /// Every value in it, in order.
+    /// Every value in it, in order; of a bit the value that it is in.
     pub(super) fn values(&self) -> Vec<Register> {
         match self {
-            Self::Value(register) => vec![register.clone()],
+            Self::Value(register) | Self::Bit(register, _) => vec![register.clone()],
             Self::Parts(parts) => parts.iter().flat_map(Self::values).collect(),
             Self::Block(instance) => {
                 let instance = instance.borrow();
                 instance.inputs.iter().chain(&instance.outputs).cloned().collect()
             }
             Self::Unit(frame) => frame.values(),
-            Self::Bit(..) | Self::Nowhere => Vec::new(),
+            Self::Nowhere => Vec::new(),
         }
     }
 

@@ -93,7 +93,7 @@ impl Oracle<'_> {
                 };
                 let target = self.locate(&walk.frame, target, &mut attempt);
                 if let Some(value) = written {
-                    target.write(Value::bool(value));
+                    self.put(&target, Value::bool(value));
                 }
                 left
             }
@@ -105,7 +105,7 @@ impl Oracle<'_> {
                 let value = self.value(&walk.frame, value, &mut attempt);
                 let target = self.locate(&walk.frame, target, &mut attempt);
                 if left {
-                    target.write(value);
+                    self.put(&target, value);
                 }
                 left & !attempt.failed
             }

@@ -1,17 +1,22 @@
 //! Random networks: series, parallel, nodes, and calls with all that can be wired to them.
 
 use rung::elementary::Elementary;
-use rung::ladder::library::StandardBlock;
+use rung::ladder::library::{Pin, Takes};
 use rung::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, ExpressionKind, Reference, Wire,
+    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
+    Reference, Wire,
 };
 
+use super::declaration::{REGISTER_COUNT, REGISTERS};
 use super::expression::boolean;
 use super::{Generator, Instance, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 /// How deep parallels and circuits at pins nest.
 const DEPTH: usize = 3;
+
+/// The most registers in a chain.
+const LONGEST_CHAIN: usize = 4;
 
 impl Generator {
     /// One to three elements.
@@ -143,7 +148,7 @@ impl Generator {
 
     fn call(&mut self, instance: &Instance, depth: usize) -> Element {
         let block = instance.block;
-        let mut arguments = self.wired_inputs(block, depth);
+        let mut arguments = self.wired_inputs(instance, depth);
         for pin in block.outputs() {
             if self.dice.percent(20)
                 && let Some(target) = self.target(pin.ty)
@@ -166,23 +171,44 @@ impl Generator {
     }
 
     /// With the first BOOL input among them, or without one, the power on the left is EN.
-    fn wired_inputs(&mut self, block: StandardBlock, depth: usize) -> Vec<Argument> {
+    fn wired_inputs(&mut self, instance: &Instance, depth: usize) -> Vec<Argument> {
+        let block = instance.block;
         let enable = self.dice.percent(25);
         let mut arguments = Vec::new();
         let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
         for (index, pin) in block.inputs().iter().enumerate() {
             let wire = match (index, pin.ty) {
+                _ if pin.takes == Takes::Reference => Wire::Value(self.register()),
+                _ if pin.takes == Takes::Constant => Wire::Value(constant(pin, instance)),
                 _ if Some(index) == power && !enable => continue,
                 _ if Some(index) == power => self.bool_wire(depth),
                 (_, Elementary::Bool) if self.dice.percent(30) => continue,
                 (_, Elementary::Bool) => self.bool_wire(depth),
                 _ if self.dice.percent(8) => continue,
+                (_, ty) if pin.range.is_some() => {
+                    // A constant beyond the range is an error, also one that is computed.
+                    let variable = self.dice.percent(30).then(|| self.place(ty, Purpose::ReadVariable)).flatten();
+                    Wire::Value(variable.map_or_else(
+                        || self.small_constant(pin),
+                        |reference| drawing::expression(ExpressionKind::Read(reference)),
+                    ))
+                }
                 (_, ty) => Wire::Value(self.preset(ty)),
             };
             let name = if self.dice.percent(20) { pin.name.to_lowercase() } else { pin.name.to_owned() };
             arguments.push(drawing::argument(&name, wire));
         }
         arguments
+    }
+
+    /// One of the registers that every program has, such that a chain of some more may follow.
+    fn register(&mut self) -> Expression {
+        drawing::read(&format!("{REGISTERS}[{}]", self.dice.below(REGISTER_COUNT as usize - LONGEST_CHAIN)))
+    }
+
+    fn small_constant(&mut self, pin: &Pin) -> Expression {
+        let numbers = small_constants(pin);
+        drawing::integer((*self.dice.pick(&numbers)).into())
     }
 
     fn bool_wire(&mut self, depth: usize) -> Wire {
@@ -194,4 +220,16 @@ impl Generator {
         self.in_pin = around;
         Wire::Circuit(Circuit { branches, span: NOWHERE })
     }
+}
+
+/// The same in every call of an instance: what kind of timer it is does not change.
+fn constant(pin: &Pin, instance: &Instance) -> Expression {
+    let numbers = small_constants(pin);
+    let chosen = instance.name.bytes().map(usize::from).sum::<usize>() % numbers.len();
+    drawing::integer(numbers[chosen].into())
+}
+
+fn small_constants(pin: &Pin) -> Vec<i64> {
+    let (least, greatest) = pin.range.expect("a pin that takes a constant says which");
+    (least..=greatest).take(LONGEST_CHAIN).collect()
 }
