@@ -81,8 +81,6 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         labels: Labels::default(),
     };
     checker.declare_variables();
-    checker.check_registers();
-    checker.declare_direct();
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();

@@ -62,6 +62,15 @@ pub(super) struct Wired {
     pub(super) inputs: Vec<Input>,
     pub(super) references: Vec<(usize, Place)>,
     pub(super) outputs: Vec<(Output, Place)>,
+    /// The pins that are wired, each with the first place.
+    seen: Vec<(String, Span)>,
+}
+
+/// What a call calls.
+struct Called {
+    pins: Pins,
+    /// None where the instance has a fault, which was reported.
+    callee: Option<Callee>,
 }
 
 /// Where in a call an argument goes.
@@ -73,28 +82,58 @@ enum Target<'a> {
 }
 
 impl Checker<'_> {
-    /// A call; `in_circuit` if there is power on its left.
+    /// A call; `in_circuit` if there is power on its left. Calls nest in circuits at pins, so that what is not needed while the
+    /// arguments are checked has functions of its own.
     pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Call> {
-        let named = call.type_name.as_ref().map(|name| self.block_named(name));
-        let instance = self.instance(call);
-        let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named.flatten()));
-        if let Some((place, _)) = &instance {
-            self.note_call(place, span, walk);
-        }
-        let Some(ty) = declared.or(named.flatten()) else {
+        let Some(called) = self.called_block(call, span, walk) else {
             self.arguments_of_unknown(call, walk);
             return None;
         };
+        let wired = self.arguments(&called.pins, call, walk);
+        self.finish_call(call, span, in_circuit, called, wired)
+    }
+
+    /// What is called, as far as it can be made out.
+    fn called_block(&mut self, call: &BlockCall, span: Span, walk: &mut Walk) -> Option<Box<Called>> {
+        let named = call.type_name.as_ref().and_then(|name| self.block_named(name));
+        let instance = self.instance(call);
+        let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named));
+        if let Some((place, _)) = &instance {
+            self.note_call(place, span, walk);
+        }
+        let ty = declared.or(named)?;
         let pins = match ty {
             Type::Block(block) => Pins::of_block(block),
             Type::Unit(unit) => self.pins_of_unit(unit),
             _ => return None,
         };
-        let mut seen: Vec<(String, Span)> = Vec::new();
-        let mut wired = Wired::default();
+        // Without a declaration, or with another one, the call was reported.
+        let callee = instance.filter(|_| declared == Some(ty)).and_then(|(place, _)| match ty {
+            Type::Unit(unit) => Some(Callee::Unit(unit, place)),
+            Type::Block(block) => Some(Callee::Standard(block, place)),
+            _ => None,
+        });
+        Some(Box::new(Called { pins, callee }))
+    }
+
+    fn arguments(&mut self, pins: &Pins, call: &BlockCall, walk: &mut Walk) -> Box<Wired> {
+        let mut wired = Box::default();
         for argument in &call.arguments {
-            self.argument(&pins, argument, &mut seen, &mut wired, walk);
+            self.argument(pins, argument, &mut wired, walk);
         }
+        wired
+    }
+
+    fn finish_call(
+        &mut self,
+        call: &BlockCall,
+        span: Span,
+        in_circuit: bool,
+        called: Box<Called>,
+        wired: Box<Wired>,
+    ) -> Option<Call> {
+        let Called { pins, callee } = *called;
+        let Wired { enable, inputs, references, outputs, seen } = *wired;
         self.check_missing(&pins, &seen, call);
         let is_wired = |pin: &Pin| seen.iter().any(|(name, _)| *name == ladder::key(&pin.name));
         let is_bool = |pin: &&Pin| pin.ty == Type::Elementary(Elementary::Bool);
@@ -104,17 +143,10 @@ impl Checker<'_> {
             Some(name) => self.power_output(&pins, name)?,
             None => pins.outputs.iter().find(is_bool).map_or(Output::Eno, |pin| Output::Pin(pin.place)),
         };
-        // Without a declaration, or with another one, the call was reported.
-        let (place, _) = instance.filter(|_| declared == Some(ty))?;
-        let callee = match ty {
-            Type::Unit(unit) => {
-                self.note_unit_call(unit, span);
-                Callee::Unit(unit, place)
-            }
-            Type::Block(block) => Callee::Standard(block, place),
-            _ => return None,
-        };
-        let Wired { enable, inputs, references, outputs } = wired;
+        let callee = callee?;
+        if let Callee::Unit(unit, _) = callee {
+            self.note_unit_call(unit, span);
+        }
         Some(Call { callee, enable, power_input, inputs, references, outputs, power_output })
     }
 
@@ -196,30 +228,10 @@ impl Checker<'_> {
     }
 
     /// Sorts in what is wired by one argument.
-    fn argument(
-        &mut self,
-        pins: &Pins,
-        argument: &ladder::Argument,
-        seen: &mut Vec<(String, Span)>,
-        wired: &mut Wired,
-        walk: &mut Walk,
-    ) {
-        let target = self.target(pins, argument, seen);
+    fn argument(&mut self, pins: &Pins, argument: &ladder::Argument, wired: &mut Wired, walk: &mut Walk) {
+        let target = self.target(pins, argument, &mut wired.seen);
         match (&argument.wire, target) {
-            (ladder::Wire::Output(reference), Some(Target::Output(pin))) => {
-                wired.outputs.extend(self.output(pin, reference).map(|place| (Output::Pin(pin.place), place)));
-            }
-            (ladder::Wire::Output(reference), Some(Target::Enabled)) => {
-                let eno = Pin {
-                    name: "ENO".to_owned(),
-                    ty: Type::Elementary(Elementary::Bool),
-                    range: None,
-                    takes: Takes::Value,
-                    place: 0,
-                };
-                wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
-            }
-            (ladder::Wire::Output(reference), _) => drop(self.written(reference)),
+            (ladder::Wire::Output(reference), target) => self.output_argument(target, reference, wired),
             (wire, Some(Target::Enable)) => wired.enable = self.wire(wire, Type::Elementary(Elementary::Bool), walk),
             (wire, Some(Target::Input(pin))) if pin.takes == Takes::Reference => {
                 wired.references.extend(self.reference_pin(pin, wire, walk).map(|place| (pin.place, place)));
@@ -230,6 +242,20 @@ impl Checker<'_> {
             }
             (ladder::Wire::Value(value), _) => drop(self.operand(value)),
             (ladder::Wire::Circuit(circuit), _) => drop(self.pin_circuit(circuit, walk)),
+        }
+    }
+
+    fn output_argument(&mut self, target: Option<Target<'_>>, reference: &ladder::Reference, wired: &mut Wired) {
+        match target {
+            Some(Target::Output(pin)) => {
+                wired.outputs.extend(self.output(pin, reference).map(|place| (Output::Pin(pin.place), place)));
+            }
+            Some(Target::Enabled) => {
+                let ty = Type::Elementary(Elementary::Bool);
+                let eno = Pin { name: "ENO".to_owned(), ty, range: None, takes: Takes::Value, place: 0 };
+                wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
+            }
+            _ => drop(self.written(reference)),
         }
     }
 
@@ -293,17 +319,22 @@ impl Checker<'_> {
             }
             (ladder::Wire::Circuit(circuit), _) => {
                 let checked = self.pin_circuit(circuit, walk);
-                if ty != Type::Elementary(Elementary::Bool) {
-                    let article = types::with_article(&self.type_name(ty));
-                    let message = format!("a circuit gives a BOOL, and the pin takes {article}");
-                    let problem = Diagnostic::new(Code::TypeMismatch, circuit.span, message);
-                    self.report.push(problem.hint("wire an expression, without brackets"));
-                    return None;
-                }
-                Some(Wire::Circuit(checked))
+                self.takes_circuit(ty, circuit.span).then_some(Wire::Circuit(checked))
             }
             (ladder::Wire::Output(_), _) => None,
         }
+    }
+
+    /// Whether a pin takes a circuit.
+    fn takes_circuit(&mut self, ty: Type, span: Span) -> bool {
+        let takes = ty == Type::Elementary(Elementary::Bool);
+        if !takes {
+            let article = types::with_article(&self.type_name(ty));
+            let message = format!("a circuit gives a BOOL, and the pin takes {article}");
+            let problem = Diagnostic::new(Code::TypeMismatch, span, message);
+            self.report.push(problem.hint("wire an expression, without brackets"));
+        }
+        takes
     }
 
     /// Whether a pin takes what is wired to it as far as it is a constant, or has to be one.

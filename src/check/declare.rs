@@ -44,6 +44,8 @@ impl Checker<'_> {
             self.sign(UnitId(index), unit);
         }
         self.scope.enter(None);
+        self.check_registers();
+        self.declare_direct();
         self.initialise_all(&program.globals, &globals);
         for ((index, unit), ids) in (0..).zip(&program.units).zip(&units) {
             self.scope.enter(Some(UnitId(index)));

@@ -216,8 +216,28 @@ impl<'p> Checker<'p> {
         node.id
     }
 
-    /// An element and the power on its right.
+    /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        match &element.kind {
+            ElementKind::Block(call) => {
+                walk.active = true;
+                let call = self.call(call, element.span, true, walk);
+                (call.map(model::Element::Call), Power::Maybe)
+            }
+            ElementKind::Parallel(circuit) => {
+                let (circuit, right) = self.circuit(circuit, left, walk);
+                (Some(model::Element::Parallel(circuit)), right)
+            }
+            _ => self.simple_element(element, left, walk),
+        }
+    }
+
+    fn simple_element(
+        &mut self,
+        element: &ladder::Element,
+        left: Power,
+        walk: &mut Walk,
+    ) -> (Option<model::Element>, Power) {
         match &element.kind {
             ElementKind::Contact { kind, operand } => {
                 let operand = self.value(operand, Elementary::Bool);
@@ -253,24 +273,16 @@ impl<'p> Checker<'p> {
                 });
                 (assignment, left)
             }
-            ElementKind::Block(call) => {
-                walk.active = true;
-                let call = self.call(call, element.span, true, walk);
-                (call.map(model::Element::Call), Power::Maybe)
-            }
             ElementKind::Statements(statements) => {
                 walk.effect(left);
                 let statements = self.statements(statements, walk);
                 (Some(model::Element::Statements(statements)), left)
             }
-            ElementKind::Parallel(circuit) => {
-                let (circuit, right) = self.circuit(circuit, left, walk);
-                (Some(model::Element::Parallel(circuit)), right)
-            }
             ElementKind::Jump { target } => {
                 (self.jump(Some(target), element.span, left, walk), left.and_never(element.span))
             }
             ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
+            ElementKind::Block(_) | ElementKind::Parallel(_) => (None, left),
         }
     }
 
