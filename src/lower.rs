@@ -1,6 +1,7 @@
 //! Lowering: from a checked program to one straight-line scan of logic.
 //!
-//! `allocate` gives every variable, pin and memory its slots, as `used` finds them needed and `storage` describes; `network`,
+//! `allocate` gives every variable, pin and memory its slots, as `used` finds them needed and `storage` describes, and
+//! `observe` says which can be watched; `network`,
 //! `statement`, `call` and `expression` turn the rungs into primitives, element by element in the order of the drawing,
 //! with `place` for what is read and written and `guard` for what is not executed; `blocks` has each function block's rule,
 //! `functions` each function's. The code that comes out is naive on purpose: nothing here may simplify or reorder, that is
@@ -16,6 +17,7 @@ mod expression;
 mod functions;
 mod guard;
 mod network;
+mod observe;
 mod place;
 mod statement;
 mod storage;

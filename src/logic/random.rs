@@ -83,7 +83,12 @@ fn layout(rng: &mut Pcg64) -> (Layout, Vec<SlotId>) {
     for index in 0..rng.random_range(1..4) {
         let ty = if rng.random_bool(0.3) { Elementary::Bool } else { pick(rng, &Elementary::ALL) };
         let (area, retain) = (pick(rng, &[Area::Output, Area::Memory]), rng.random_bool(0.3));
-        let most = if rng.random_bool(0.2) { 40 } else { 6 };
+        // Mostly small, so that indices hit them; some so long that engines copy them in another way.
+        let most = match rng.random_range(0..50) {
+            0 => 300,
+            1..10 => 40,
+            _ => 6,
+        };
         let elements = rng.random_range(1..most);
         // Two alike, so that one can be copied to the other; of some, a part is an array, too.
         for copy in ["", "'"] {

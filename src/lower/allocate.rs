@@ -6,6 +6,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::blocks;
+use super::observe::Observer;
 use super::storage::{BlockCells, Cells, Frame, Slots, Storage};
 use super::used::Used;
 use crate::check::{ArrayType, Checked, Initial, PinId, Step, Type, UnitId, UnitKind, Variable, VariableId};
@@ -33,13 +34,13 @@ pub(super) fn allocate(
     };
     let none = |prefix: &str| Owner::top(prefix.to_owned());
     let globals = allocator.frame(checked.globals(), &none(""));
-    allocator.observe_frame(checked.globals(), &globals, "");
+    allocator.observe(checked.globals(), &globals, "");
     let mut programs = Vec::new();
     for program in checked.programs() {
         let several = checked.programs().len() > 1;
         let prefix = if several { format!("{}.", program.name) } else { String::new() };
         let frame = allocator.unit(program.unit, &none(&prefix));
-        allocator.observe_frame(checked.unit(program.unit).variables(), &frame, &prefix);
+        allocator.observe(checked.unit(program.unit).variables(), &frame, &prefix);
         programs.push(frame);
     }
     let mut functions = HashMap::new();
@@ -131,7 +132,7 @@ fn given<'a>(initial: &'a Initial, step: &Step) -> Option<&'a Initial> {
 }
 
 /// The indices of an array's elements in order, as they are written.
-fn indices(array: &ArrayType) -> impl Iterator<Item = String> {
+pub(super) fn indices(array: &ArrayType) -> impl Iterator<Item = String> {
     (0..array.count()).map(|place| {
         let mut rest = place;
         let mut numbers: Vec<String> = (array.dimensions.iter().rev())
@@ -297,13 +298,12 @@ impl<'a> Allocator<'a> {
     }
 
     /// Makes variables side by side watchable.
-    fn observe_frame(&mut self, variables: impl Iterator<Item = VariableId>, frame: &Frame, prefix: &str) {
-        let located = std::mem::take(&mut self.located);
-        let mut observer = Observer { checked: self.checked, located: &located, layout: &mut self.layout };
+    fn observe(&mut self, variables: impl Iterator<Item = VariableId>, frame: &Frame, prefix: &str) {
+        let Self { checked, located, layout, .. } = self;
+        let mut observer = Observer { checked, located, layout };
         for id in variables {
             observer.variable(id, frame, 0, prefix);
         }
-        self.located = located;
     }
 }
 
@@ -330,50 +330,4 @@ pub(super) fn first_at_address(checked: &Checked, id: VariableId) -> VariableId 
         first = earlier;
     }
     first
-}
-
-/// Makes slots watchable in the order of their names: an array element by element, of an instance the outputs.
-struct Observer<'a> {
-    checked: &'a Checked,
-    located: &'a HashMap<VariableId, Storage>,
-    layout: &'a mut LayoutBuilder,
-}
-
-impl Observer<'_> {
-    fn variable(&mut self, id: VariableId, frame: &Frame, element: u32, prefix: &str) {
-        let variable = self.checked.variable(id);
-        let located = || self.located.get(&first_at_address(self.checked, id));
-        if let Some(storage) = frame.get(id).or_else(located) {
-            self.part(variable.ty, storage, element, format!("{prefix}{}", variable.name));
-        }
-    }
-
-    /// The element of each run in the storage that has this number.
-    fn part(&mut self, ty: Type, storage: &Storage, element: u32, name: String) {
-        match (ty, storage) {
-            (_, Storage::Value(cells)) => self.layout.observe(name, cells.slot(element)),
-            (Type::Array(array), Storage::Array(inner)) => {
-                let array = self.checked.array(array);
-                for (place, index) in (0..).zip(indices(array)) {
-                    self.part(array.element, inner, element * array.count() + place, format!("{name}[{index}]"));
-                }
-            }
-            (Type::Structure(structure), Storage::Structure(members)) => {
-                for (field, member) in self.checked.structure(structure).fields.iter().zip(members) {
-                    self.part(field.ty, member, element, format!("{name}.{}", field.name));
-                }
-            }
-            (Type::Block(block), Storage::Block(cells)) => {
-                for (pin, cells) in block.outputs().iter().zip(&cells.outputs) {
-                    self.layout.observe(format!("{name}.{}", pin.name), cells.slot(element));
-                }
-            }
-            (Type::Unit(unit), Storage::Unit(frame)) => {
-                for output in &self.checked.unit(unit).outputs {
-                    self.variable(*output, frame, element, &format!("{name}."));
-                }
-            }
-            _ => unreachable!("storage is made for its type"),
-        }
-    }
 }

@@ -7,6 +7,7 @@ mod examples;
 mod faults;
 mod jumps;
 mod random;
+mod register_machine;
 mod statements;
 mod steps;
 mod straight_line;

@@ -115,6 +115,12 @@ mod tests {
     }
 
     #[test]
+    fn an_index_out_of_range_is_told_in_words() {
+        let line = Second::default().line(&Change { now: 0, index: 0, value: Value::bool(true) }, &[point(FAULT)]);
+        assert_eq!(line, Some(format!("    0.000 s  {}\n", tasks::FAULT)));
+    }
+
+    #[test]
     fn what_changes_all_the_time_leaves_room_for_the_rest() {
         let told = [point("blink"), point("alarm")];
         let mut second = Second::default();

@@ -5,8 +5,8 @@
 
 use super::super::{Rule, Rules, Run};
 use super::{DIGITS, number, preset};
-use crate::elementary::Elementary::{Bool, Lword, Time, Udint, Word};
 use crate::elementary::Elementary;
+use crate::elementary::Elementary::{Bool, Lword, Time, Udint, Word};
 use crate::ladder::library::StandardBlock::{Ts, Tt};
 use crate::logic::{Binary, Compare, ValueId};
 
