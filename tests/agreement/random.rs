@@ -17,6 +17,7 @@ use crate::support::oracle::Oracle;
 use crate::support::random_program::random_program;
 use crate::support::random_stimuli::Stimuli;
 use crate::support::rig::{Rig, checked};
+use crate::support::shrink;
 
 /// Every kind of element that must occur and change in a run of the usual length.
 const KINDS: [&str; 15] = [
@@ -46,6 +47,7 @@ fn random_programs_compute_the_same_on_every_engine_and_in_the_evaluator() {
     for seed in seeds() {
         let program = random_program(seed);
         if run(&program, seed).is_err() {
+            if std::env::var("KEEP").is_ok() { println!("FAIL {}", report(&program, seed)); continue; }
             panic!("{}", report(&program, seed));
         }
     }
@@ -129,6 +131,9 @@ fn trace(checked: &Checked, seed: u64) -> String {
     trace
 }
 
+/// The heading of a program with errors.
+const DOES_NOT_CHECK: &str = "it does not check";
+
 /// A failure: a heading that stays the same while the program is made smaller, and the particulars.
 struct Failure {
     heading: &'static str,
@@ -138,7 +143,7 @@ struct Failure {
 /// Runs a program everywhere and compares after every scan.
 fn run(program: &Program, seed: u64) -> Result<(), Failure> {
     let failure = |heading, particulars| Failure { heading, particulars };
-    let checked = checked(program).map_err(|problems| failure("it does not check", problems))?;
+    let checked = checked(program).map_err(|problems| failure(DOES_NOT_CHECK, problems))?;
     let mut rig = Rig::new(&checked).map_err(|problem| failure("it does not compile", problem))?;
     let mut stimuli = Stimuli::new(seed, &checked);
     for scan in 0..number("RUNG_SCANS", SCANS) {
@@ -156,37 +161,21 @@ fn run(program: &Program, seed: u64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What is wrong with a program, after leaving out every rung without which it is wrong in the same way.
+/// What is wrong with a program, after leaving out everything without which it is wrong in the same way.
 fn report(program: &Program, seed: u64) -> String {
     let Err(mut failure) = run(program, seed) else { return format!("seed {seed}: it fails only sometimes") };
-    let mut smallest = program.clone();
-    for unit in 0..smallest.units.len() {
-        for place in (0..smallest.units[unit].rungs.len()).rev() {
-            let mut smaller = smallest.clone();
-            smaller.units[unit].rungs.remove(place);
-            keep_if_same(&mut smallest, smaller, &mut failure, seed);
-        }
-        for rung in 0..smallest.units[unit].rungs.len() {
-            let elements = smallest.units[unit].rungs[rung].circuit.branches[0].elements.len();
-            for element in (0..elements).rev() {
-                let mut smaller = smallest.clone();
-                smaller.units[unit].rungs[rung].circuit.branches[0].elements.remove(element);
-                keep_if_same(&mut smallest, smaller, &mut failure, seed);
+    let smallest = match failure.heading {
+        DOES_NOT_CHECK => program.clone(),
+        heading => shrink::smallest(program, |smaller| match run(smaller, seed) {
+            Err(same) if same.heading == heading => {
+                failure = same;
+                true
             }
-        }
-    }
+            _ => false,
+        }),
+    };
     let Failure { heading, particulars } = failure;
     format!("seed {seed}: {heading}\n{particulars}\n{}", native::print(&smallest))
-}
-
-/// Goes on with a smaller program if it is wrong in the same way.
-fn keep_if_same(smallest: &mut Program, smaller: Program, failure: &mut Failure, seed: u64) {
-    match run(&smaller, seed) {
-        Err(same) if same.heading == failure.heading && failure.heading != "it does not check" => {
-            (*smallest, *failure) = (smaller, same);
-        }
-        _ => {}
-    }
 }
 
 /// The rungs that write a variable or call an instance.
