@@ -3,7 +3,7 @@
 use rung::elementary::Elementary;
 use rung::ladder::library::{Pin, StandardBlock, Takes};
 use rung::ladder::{
-    Argument, BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Reference, VariableClass, Wire,
+    Argument, BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Reference, Root, VariableClass, Wire,
 };
 
 use super::shape::{Bounds, Shape};
@@ -55,7 +55,7 @@ impl Generator {
     /// A call of an instance: in a circuit at a depth, or without one a statement.
     fn instance_call(&mut self, instance: &Instance, depth: Option<usize>) -> BlockCall {
         let mut arguments = match &instance.kind {
-            Kind::Standard(block) => self.wired_inputs(*block, depth),
+            Kind::Standard(block) => self.wired_inputs(*block, timer_kind(&instance.reference), depth),
             Kind::Own(own) => self.own_inputs(own, depth),
         };
         let outputs: Vec<(String, Elementary)> = match &instance.kind {
@@ -104,7 +104,7 @@ impl Generator {
     }
 
     /// With the first BOOL input among them, or without one, the power on the left is EN.
-    fn wired_inputs(&mut self, block: StandardBlock, depth: Option<usize>) -> Vec<Argument> {
+    fn wired_inputs(&mut self, block: StandardBlock, kind: i128, depth: Option<usize>) -> Vec<Argument> {
         let enable = depth.is_none() || self.dice.percent(25);
         let mut arguments = self.enable(depth);
         let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
@@ -117,7 +117,7 @@ impl Generator {
                 (Takes::Constant, Some((_, length))) => {
                     Wire::Value(drawing::integer(self.dice.between(1, *length) as i128))
                 }
-                (Takes::Constant, None) => Wire::Value(drawing::integer(self.dice.below(4) as i128)),
+                (Takes::Constant, None) => Wire::Value(drawing::integer(kind)),
                 _ if Some(index) == power && !enable => continue,
                 _ if Some(index) == power => self.bool_wire(depth),
                 _ if pin.ty == Elementary::Bool && pin.initial != 0 && self.dice.percent(60) => continue,
@@ -230,6 +230,15 @@ impl Generator {
         self.in_pin = around;
         Wire::Circuit(Circuit { branches, span: NOWHERE })
     }
+}
+
+/// What kind of timer an instance is, in every call of it.
+fn timer_kind(instance: &Reference) -> i128 {
+    let name = match &instance.root {
+        Root::Name(name) => name.text.as_str(),
+        Root::Address(_) => "",
+    };
+    name.bytes().last().map_or(0, |last| i128::from(last % 4))
 }
 
 /// The outputs that are single values.
