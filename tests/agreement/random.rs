@@ -1,26 +1,29 @@
 //! Random programs under random stimuli.
 //!
-//! `RUNG_SEEDS=5000 RUNG_SCANS=1000 cargo test --test agreement -- --nocapture` looks longer; a seed that failed
+//! `RUNG_SEEDS=100000 RUNG_SCANS=1000 cargo test --test agreement -- --nocapture` looks longer; a seed that failed
 //! is looked at again with `RUNG_FIRST_SEED=17 RUNG_SEEDS=1`.
 
 use std::fmt::Write as _;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{LazyLock, Mutex};
 
 use rung::check::{Call, Callee, Checked, Circuit, Element, Place, Wire};
 use rung::elementary::Elementary;
 use rung::frontend::{self, native};
 use rung::ladder::Program;
+use rung::ladder::functions::StandardFunction;
 use rung::ladder::library::StandardBlock;
 use rung::source::Source;
 
 use crate::support::coverage::Coverage;
-use crate::support::oracle::Oracle;
+use crate::support::oracle::{Activity, Oracle};
 use crate::support::random_program::random_program;
 use crate::support::random_stimuli::Stimuli;
 use crate::support::rig::{Rig, checked};
 use crate::support::shrink;
 
 /// Every kind of element that must occur and change in a run of the usual length.
-const KINDS: [&str; 15] = [
+const KINDS: [&str; 34] = [
     "contact a",
     "contact /a",
     "contact ^a",
@@ -36,51 +39,138 @@ const KINDS: [&str; 15] = [
     "parallel [a | b]",
     "jump >> r",
     "jump >> return",
+    "statements {a; b}",
+    "statement a := b",
+    "statement a := b of many",
+    "statement call",
+    "statement IF",
+    "statement CASE",
+    "statement FOR",
+    "statement EXIT",
+    "statement RETURN",
+    "own block",
+    "own block with EN",
+    "own block with references",
+    "own block with references, with EN",
+    "box of an own function",
+    "own function f(a)",
+    "box that converts",
+    "index a[i]",
+    "index out of range",
+    "task with an interval",
+];
+
+/// What else must occur; it has no value of its own that could change.
+const DRAWN: [&str; 40] = [
+    "sizes of the register machine",
+    "type with another name",
+    "type structure",
+    "type enumeration",
+    "unit program",
+    "unit function block",
+    "unit function",
+    "named instance of a program",
+    "task",
+    "global",
+    "declared own type",
+    "declared array of own type",
+    "declared Input",
+    "declared Output",
+    "declared Memory",
+    "declared Constant",
+    "declared InOut",
+    "declared Temporary",
+    "declared with an initial value",
+    "declared retain",
+    "declared at an address",
+    "declared array of many dimensions",
+    "rung that is off",
+    "branch at a node",
+    "branch without elements",
+    "operand address",
+    "operand member",
+    "operand bit",
+    "operand index",
+    "operand literal",
+    "operand of an enumeration",
+    "initial value of many",
+    "call with a chosen power output",
+    "pin EN",
+    "pin ENO",
+    "pin with a value",
+    "pin with a circuit",
+    "pin with an output",
+    "CASE of a range",
+    "FOR by a step",
 ];
 
 /// Programs in a run of the usual length, and scans of each.
-const SEEDS: u64 = 500;
-const SCANS: u64 = 200;
+const SEEDS: u64 = 2000;
+const SCANS: u64 = 100;
+
+/// What became of all programs; they run once, for several tests to look at.
+struct Outcome {
+    /// The least seed that failed.
+    failed: Option<u64>,
+    coverage: Coverage,
+}
+
+static OUTCOME: LazyLock<Outcome> = LazyLock::new(|| {
+    let (next, failed) = (AtomicU64::new(seeds().start), AtomicU64::new(u64::MAX));
+    let coverage = Mutex::new(Coverage::default());
+    let work = || {
+        let mut seen = Coverage::default();
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= seeds().end || failed.load(Ordering::Relaxed) < seed {
+                break;
+            }
+            let program = random_program(seed);
+            seen.add_program(&program);
+            match run(&program, seed) {
+                Ok(activities) => seen.add_activities(&activities),
+                Err(_) => drop(failed.fetch_min(seed, Ordering::Relaxed)),
+            }
+        }
+        coverage.lock().expect("no thread panics while it adds").add(seen);
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+    let failed = Some(failed.into_inner()).filter(|seed| *seed < u64::MAX);
+    Outcome { failed, coverage: coverage.into_inner().expect("all threads are done") }
+});
 
 #[test]
 fn random_programs_compute_the_same_on_every_engine_and_in_the_evaluator() {
-    for seed in seeds() {
-        let program = random_program(seed);
-        if run(&program, seed).is_err() {
-            if std::env::var("KEEP").is_ok() { if std::env::var("KEEP").as_deref() == Ok("2") { let f = run(&program, seed).unwrap_err(); println!("FAIL {seed} {} {}", f.heading, f.particulars.lines().take(6).collect::<Vec<_>>().join(" / ")); } else { println!("FAIL {}", report(&program, seed)); } continue; }
-            panic!("{}", report(&program, seed));
-        }
+    if let Some(seed) = OUTCOME.failed {
+        panic!("{}", report(&random_program(seed), seed));
     }
 }
 
 #[test]
 #[expect(clippy::print_stdout, reason = "the table is for whoever runs the test with --nocapture")]
-fn in_random_programs_every_element_and_block_occurs_and_changes() {
-    let mut coverage = Coverage::default();
-    for seed in seeds() {
-        let program = random_program(seed);
-        coverage.add_program(&program);
-        let checked = checked(&program).unwrap_or_else(|problems| panic!("seed {seed}\n{problems}"));
-        let mut oracle = Oracle::new(&checked);
-        let mut stimuli = Stimuli::new(seed, &checked);
-        for _ in 0..number("RUNG_SCANS", SCANS) {
-            let (now, changes) = stimuli.next();
-            changes.iter().for_each(|(name, value)| oracle.set(name, *value));
-            oracle.scan(now);
-        }
-        coverage.add_activities(oracle.activities());
-    }
+fn in_random_programs_every_element_block_function_and_statement_occurs_and_changes() {
+    let coverage = &OUTCOME.coverage;
     println!("{coverage}");
-    if number("RUNG_SEEDS", SEEDS) >= SEEDS && number("RUNG_SCANS", SCANS) >= SCANS {
-        assert_eq!(coverage.missing(&KINDS), [""; 0], "these elements never changed");
-        let kinds = StandardBlock::ALL.iter().map(|block| {
-            let takes_power = block.inputs().iter().any(|pin| pin.ty == Elementary::Bool);
-            if takes_power { block.name().to_owned() } else { format!("{} with EN", block.name()) }
-        });
-        let blocks: Vec<String> = kinds.collect();
-        let blocks: Vec<&str> = blocks.iter().map(String::as_str).collect();
-        assert_eq!(coverage.missing(&blocks), [""; 0], "these blocks never changed");
+    if number("RUNG_SEEDS", SEEDS) < SEEDS || number("RUNG_SCANS", SCANS) < SCANS || OUTCOME.failed.is_some() {
+        return;
     }
+    assert_eq!(coverage.missing(&KINDS), [""; 0], "these elements never changed");
+    let takes_power = |block: &StandardBlock| block.inputs().iter().any(|pin| pin.ty == Elementary::Bool);
+    let blocks = StandardBlock::ALL.iter().flat_map(|block| {
+        let by_power = takes_power(block).then(|| block.name().to_owned());
+        by_power.into_iter().chain([format!("{} with EN", block.name())])
+    });
+    let boxes = StandardFunction::ALL.iter().map(|function| format!("box {}", function.name()));
+    let changing: Vec<String> = blocks.chain(boxes).collect();
+    let changing: Vec<&str> = changing.iter().map(String::as_str).collect();
+    assert_eq!(coverage.missing(&changing), [""; 0], "these blocks and boxes never changed");
+    let functions = StandardFunction::ALL.iter().map(|function| format!("function {}", function.name()));
+    let declared = Elementary::ALL.iter().flat_map(|ty| [format!("declared {ty}"), format!("declared array of {ty}")]);
+    let instances = StandardBlock::ALL.iter().map(|block| format!("declared {}", block.name()));
+    let drawn = DRAWN.into_iter().map(str::to_owned);
+    let drawn: Vec<String> = functions.chain(declared).chain(instances).chain(drawn).collect();
+    assert_eq!(coverage.never_drawn(&drawn), [""; 0], "these never occurred");
 }
 
 #[test]
@@ -141,7 +231,7 @@ struct Failure {
 }
 
 /// Runs a program everywhere and compares after every scan.
-fn run(program: &Program, seed: u64) -> Result<(), Failure> {
+fn run(program: &Program, seed: u64) -> Result<Vec<Activity>, Failure> {
     let failure = |heading, particulars| Failure { heading, particulars };
     let checked = checked(program).map_err(|problems| failure(DOES_NOT_CHECK, problems))?;
     let mut rig = Rig::new(&checked).map_err(|problem| failure("it does not compile", problem))?;
@@ -158,7 +248,7 @@ fn run(program: &Program, seed: u64) -> Result<(), Failure> {
             failure("the engines differ", particulars)
         })?;
     }
-    Ok(())
+    Ok(rig.oracle.activities().to_vec())
 }
 
 /// What is wrong with a program, after leaving out everything without which it is wrong in the same way.
@@ -237,4 +327,30 @@ fn zz_checks() {
     }
     println!("failed {failed}"); if let Ok(text) = std::env::var("SHOW") { let seed: u64 = text.parse().unwrap(); let p = random_program(seed); let text = native::print(&p); let source = Source::new("x", text.as_str()); let parsed = frontend::parse(&source); println!("{}", rung::diagnostic::render(&source, &parsed.diagnostics)); let (_, d) = rung::check::check(&parsed.program); println!("{}", rung::diagnostic::render(&source, &d.into_iter().filter(|d| d.is_error()).collect::<Vec<_>>())); if let Err(e) = checked(&p) { println!("{}", e.split("\n\n").filter(|p| p.starts_with("error")).collect::<Vec<_>>().join("\n")); } }
     for (line, (n, seed)) in counts { println!("{n} (seed {seed}) {line}"); }
+}
+
+#[test]
+fn zz_time() {
+    use std::time::{Duration, Instant};
+    let mut t = [Duration::ZERO; 8];
+    let mut sizes = vec![];
+    for seed in seeds() {
+        let whole = Instant::now();
+        let n = Instant::now(); let program = random_program(seed); t[0] += n.elapsed();
+        let n = Instant::now(); let Ok(checked) = checked(&program) else { continue }; t[1] += n.elapsed();
+        let n = Instant::now(); let plain = rung::lower::lower(&checked, &Source::new("drawn", ""), None).unwrap(); t[2] += n.elapsed();
+        let n = Instant::now(); let o = rung::opt::optimise(plain.clone()); t[3] += n.elapsed();
+        let n = Instant::now(); rung::engine::jit::Jit::compile(&plain).unwrap(); t[4] += n.elapsed();
+        let n = Instant::now(); rung::engine::jit::Jit::compile(&o).unwrap(); t[5] += n.elapsed();
+        let n = Instant::now(); 
+        let mut oracle = Oracle::new(&checked);
+        let mut stimuli = Stimuli::new(seed, &checked);
+        for _ in 0..number("RUNG_SCANS", SCANS) { let (now, changes) = stimuli.next(); for (name, v) in changes { oracle.set(&name, v); } oracle.scan(now); }
+        t[6] += n.elapsed();
+        let n = Instant::now(); let _ = run(&program, seed); t[7] += n.elapsed();
+        sizes.push((whole.elapsed(), plain.instructions.len(), plain.layout.observed().len(), seed));
+    }
+    println!("generate check lower opt jit jitopt oracle run\n{t:?}");
+    sizes.sort(); println!("{:?}", &sizes[sizes.len()/2]); println!("{:?}", &sizes[sizes.len().saturating_sub(10)..]);
+    println!("instructions {}", sizes.iter().map(|s| s.1).sum::<usize>());
 }

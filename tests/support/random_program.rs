@@ -174,7 +174,7 @@ impl Generator {
     /// Whether another call of something is not too much to be written out; it is noted.
     fn affords(&mut self, called: &Signature) -> bool {
         let weight = self.weight + called.weight * self.turns;
-        let affordable = weight < if matches!(self.unit.kind, UnitKind::Program { .. }) { 2000 } else { 300 };
+        let affordable = weight < if matches!(self.unit.kind, UnitKind::Program { .. }) { 300 } else { 100 };
         if affordable {
             self.weight = weight;
         }

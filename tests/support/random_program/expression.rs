@@ -100,6 +100,7 @@ impl Generator {
         }
         match self.readable(ty, Purpose::Read) {
             Some(reference) if !self.dice.percent(15) => drawing::expression(ExpressionKind::Read(reference)),
+            _ if ty == Elementary::Int && self.has_colours() && self.dice.percent(50) => self.colour(),
             _ => self.literal(ty, false),
         }
     }

@@ -4,7 +4,7 @@ use rung::elementary::Elementary;
 use rung::ladder::functions::StandardFunction;
 use rung::ladder::{Expression, ExpressionKind, FunctionArgument};
 
-use super::Generator;
+use super::{Generator, Purpose};
 use crate::support::drawing;
 
 impl Generator {
@@ -111,6 +111,8 @@ impl Generator {
 
     fn conversion(&mut self, to: Elementary, depth: usize) -> (String, Vec<(String, Expression)>) {
         let from = if to.is_integer() && self.dice.percent(20) { Elementary::Real } else { self.some_type() };
+        // What is converted from a constant is one, and may then overflow.
+        let from = if self.place(from, Purpose::ReadVariable).is_some() { from } else { Elementary::Bool };
         let operand = self.anchored(from, depth - 1);
         let name = match self.dice.below(3) {
             0 => format!("TO_{to}"),

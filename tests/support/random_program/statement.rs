@@ -10,7 +10,7 @@ use super::{Generator, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 /// How deep statements nest.
-const DEPTH: usize = 3;
+const DEPTH: usize = 2;
 
 impl Generator {
     /// What stands in braces; never nothing.
@@ -23,7 +23,7 @@ impl Generator {
         let kind = match self.dice.below(100) {
             0..18 if nests => self.choice(depth, in_loop),
             18..28 if nests => self.case(depth, in_loop),
-            28..40 if nests => self.repetition(depth),
+            28..40 if nests && (!in_loop || self.dice.percent(25)) => self.repetition(depth),
             40..58 => self.call_statement().map(StatementKind::Call),
             58..66 => self.copied().map(|(target, source)| StatementKind::Assignment {
                 target,
@@ -73,11 +73,15 @@ impl Generator {
     fn label(&mut self, ty: Elementary) -> CaseLabel {
         let first = self.dice.below(5) as i128;
         let last = self.dice.percent(30).then(|| drawing::integer(first + self.dice.below(3) as i128));
-        let is_colour = ty == Elementary::Int && self.value_types.iter().any(|(_, name)| name == "colour");
-        if !is_colour || last.is_some() || self.dice.percent(50) {
+        if ty != Elementary::Int || !self.has_colours() || last.is_some() || self.dice.percent(50) {
             return CaseLabel { first: drawing::integer(first), last };
         }
         CaseLabel { first: self.colour(), last: None }
+    }
+
+    /// Whether there is an enumeration.
+    pub(super) fn has_colours(&self) -> bool {
+        self.value_types.iter().any(|(_, name)| name == "colour")
     }
 
     /// A value of the enumeration.
@@ -100,8 +104,8 @@ impl Generator {
         }
         let root = self.dice.pick(&counts).clone();
         let variable = Reference { root, steps: Vec::new(), span: NOWHERE };
-        let first = self.dice.below(4);
-        let last = self.dice.below(5);
+        let first = self.dice.below(3);
+        let last = self.dice.below(4);
         let down = last < first;
         let step = match self.dice.below(3) {
             0 => Some(drawing::integer(if down { -1 } else { 2 })),
@@ -109,7 +113,7 @@ impl Generator {
             _ => None,
         };
         let around = self.turns;
-        self.turns *= 5;
+        self.turns *= 3;
         let body = self.statements(depth + 1, true);
         self.turns = around;
         let (first, last) = (drawing::integer(first as i128), drawing::integer(last as i128));

@@ -89,7 +89,7 @@ impl Generator {
         }
         let signature = self.pins(name, result);
         self.declare_local();
-        let rungs = self.dice.between(1, 3);
+        let rungs = self.dice.between(1, 2);
         self.finish(rungs);
         self.functions.push(Signature { weight: self.weight, ..signature });
     }
@@ -99,8 +99,8 @@ impl Generator {
         self.start(UnitKind::FunctionBlock, &name, globals, wholes);
         let signature = self.pins(name, None);
         self.declare_local();
-        self.declare_instances(3);
-        let rungs = self.dice.between(1, 5);
+        self.declare_instances(2);
+        let rungs = self.dice.between(1, 3);
         self.finish(rungs);
         self.blocks.push(Signature { weight: self.weight, ..signature });
     }
@@ -112,8 +112,8 @@ impl Generator {
         let (own, first, second) = (task(), task(), task());
         self.start(UnitKind::Program { task: own }, &name, globals, wholes);
         self.declare(number);
-        self.declare_instances(8);
-        let rungs = self.dice.between(1, if number == 0 { 16 } else { 5 });
+        self.declare_instances(if number == 0 { 5 } else { 2 });
+        let rungs = self.dice.between(1, if number == 0 { 9 } else { 3 });
         self.finish(rungs);
         // Instances under names of their own run instead of the one of the program's name.
         if self.dice.percent(20) {
