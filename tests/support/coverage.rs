@@ -6,8 +6,8 @@ use std::fmt;
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
 use rung::ladder::{
-    BlockCall, Branch, CaseLabel, Circuit, ElementKind, Expression, ExpressionKind, Literal, Program, Reference, Root, Statement,
-    StatementKind, Step, TypeKind, UnitKind, Wire,
+    BlockCall, Branch, CaseLabel, Circuit, ElementKind, Expression, ExpressionKind, Literal, Program, Reference, Root,
+    Statement, StatementKind, Step, TypeKind, UnitKind, Wire,
 };
 
 use super::oracle::Activity;
@@ -70,6 +70,7 @@ impl Coverage {
             self.saw(&format!("declared {}{ty}", if array { "array of " } else { "" }));
             self.saw(&format!("declared {:?}", variable.class));
             self.saw_if(variable.initial.is_some(), "declared with an initial value");
+            variable.initial.iter().for_each(|initial| self.add_expression(initial));
             self.saw_if(variable.retain, "declared retain");
             self.saw_if(variable.address.is_some(), "declared at an address");
         }

@@ -174,9 +174,7 @@ impl Cut {
         let operands: Vec<Expression> = match &expression.kind {
             ExpressionKind::Unary(_, operand) => vec![(**operand).clone()],
             ExpressionKind::Binary(_, left, right) => vec![(**left).clone(), (**right).clone()],
-            ExpressionKind::Call { arguments, .. } => {
-                arguments.iter().map(|argument| argument.value.clone()).collect()
-            }
+            ExpressionKind::Call { arguments, .. } => arguments.iter().map(|argument| argument.value.clone()).collect(),
             _ => Vec::new(),
         };
         for operand in operands {

@@ -3,7 +3,8 @@
 use rung::elementary::Elementary;
 use rung::ladder::library::{Pin, StandardBlock, Takes};
 use rung::ladder::{
-    Argument, BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Reference, Root, VariableClass, Wire,
+    Argument, BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Reference, Root, VariableClass,
+    Wire,
 };
 
 use super::shape::{Bounds, Shape};
@@ -145,11 +146,8 @@ impl Generator {
             if self.dice.percent(30) {
                 continue;
             }
-            let wire = if *ty == Elementary::Bool {
-                self.bool_wire(depth)
-            } else {
-                Wire::Value(self.expression(*ty, 1))
-            };
+            let wire =
+                if *ty == Elementary::Bool { self.bool_wire(depth) } else { Wire::Value(self.expression(*ty, 1)) };
             arguments.push(drawing::argument(name, wire));
         }
         for (name, shape) in &own.references {
@@ -164,7 +162,9 @@ impl Generator {
     pub(super) fn reference_to(&mut self, shape: &Shape) -> Reference {
         let found = match shape {
             Shape::Value(ty) => self.place(*ty, Purpose::Write),
-            _ => self.whole(|whole| whole.shape == *shape && Purpose::Write.allows(whole.class)).map(|(whole, _)| whole),
+            _ => {
+                self.whole(|whole| whole.shape == *shape && Purpose::Write.allows(whole.class)).map(|(whole, _)| whole)
+            }
         };
         found.unwrap_or_else(|| {
             let name = format!("given_{}", self.unit.variables.len());

@@ -147,7 +147,12 @@ impl Generator {
                     Width::Long => Elementary::Lword,
                 };
                 let ty = names.first().map_or(direct, |(_, ty)| *ty);
-                self.scope.push(Entry { root: Root::Address(address(class, width, numbers)), way: Vec::new(), ty, class });
+                self.scope.push(Entry {
+                    root: Root::Address(address(class, width, numbers)),
+                    way: Vec::new(),
+                    ty,
+                    class,
+                });
             }
         }
     }

@@ -41,11 +41,8 @@ impl Generator {
         let mut arguments = self.enable(depth);
         for (name, ty) in &own.inputs {
             if !self.dice.percent(20) {
-                let wire = if *ty == Elementary::Bool {
-                    self.bool_wire(depth)
-                } else {
-                    Wire::Value(self.expression(*ty, 1))
-                };
+                let wire =
+                    if *ty == Elementary::Bool { self.bool_wire(depth) } else { Wire::Value(self.expression(*ty, 1)) };
                 arguments.push(drawing::argument(name, wire));
             }
         }

@@ -2,8 +2,8 @@
 
 use rung::elementary::Elementary;
 use rung::ladder::{
-    ArrayItem, BinaryOperator, Dimension, Expression, ExpressionKind, Field, MemberValue, Reference, Root, Step, TypeDeclaration,
-    TypeKind, TypeReference, VariableClass,
+    ArrayItem, BinaryOperator, Dimension, Expression, ExpressionKind, Field, MemberValue, Reference, Root, Step,
+    TypeDeclaration, TypeKind, TypeReference, VariableClass,
 };
 
 use super::{Entry, Generator, Purpose, Whole};

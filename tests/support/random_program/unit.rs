@@ -1,9 +1,7 @@
 //! Random units: function blocks and functions, each of which may use those before it, then programs and what runs them.
 
 use rung::elementary::Elementary;
-use rung::ladder::{
-    ProgramInstance, Registers, Setting, Task, TypeReference, Unit, UnitKind, Variable, VariableClass,
-};
+use rung::ladder::{ProgramInstance, Registers, Setting, Task, TypeReference, Unit, UnitKind, Variable, VariableClass};
 
 use super::expression::time;
 use super::shape::{Shape, Way};
@@ -81,8 +79,7 @@ impl Generator {
     fn function_unit(&mut self, number: usize, globals: &[Entry], wholes: &[Whole]) {
         let name = format!("f{number}");
         let result = self.dice.percent(80).then(|| self.usual_type());
-        let kind =
-            UnitKind::Function { result: result.map(|ty| TypeReference::of_name(drawing::name(ty.name()))) };
+        let kind = UnitKind::Function { result: result.map(|ty| TypeReference::of_name(drawing::name(ty.name()))) };
         self.start(kind, &name, globals, wholes);
         if let Some(ty) = result {
             self.add_name(&name, &Shape::Value(ty), VariableClass::Output);
@@ -212,7 +209,8 @@ impl Generator {
 
     fn task(&mut self, number: usize) {
         let interval = *self.dice.pick(&[0, 1, 2, 5, 7, 10, 50, 200]);
-        let priority = self.dice.percent(70).then(|| self.dice.below(4)).map(|priority| drawing::integer(priority as i128));
+        let priority =
+            self.dice.percent(70).then(|| self.dice.below(4)).map(|priority| drawing::integer(priority as i128));
         self.program.tasks.push(Task {
             name: drawing::name(&format!("task{number}")),
             interval: (interval > 0).then(|| time(interval * MILLISECOND)),
