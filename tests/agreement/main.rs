@@ -7,6 +7,7 @@ mod examples;
 mod faults;
 mod guards;
 mod jumps;
+mod passes;
 mod random;
 mod register_machine;
 mod statements;
