@@ -22,7 +22,7 @@ pub(super) struct Called {
 struct Pins {
     inputs: Vec<Storage>,
     outputs: Vec<(Storage, Type)>,
-    /// Of a function of the program's own all of its variables.
+    /// Of a unit of the program's own all of its variables.
     frame: Frame,
 }
 
