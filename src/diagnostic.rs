@@ -71,6 +71,8 @@ codes! {
     BadLiteral = 205 Error "a literal that cannot be read",
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
+    BadXml = 221 Error "XML that cannot be read",
+    BadElement = 222 Error "an element that lacks what it needs",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
@@ -100,10 +102,16 @@ codes! {
     RetainedInput = 509 Error "an input cannot be retained",
     BackwardJump = 510 Error "a jump to its own rung or an earlier one",
     MisplacedJump = 511 Error "a jump where none can stand",
+    DanglingConnection = 521 Error "a wire from an element that there is not",
+    DuplicateId = 522 Error "two elements of one id",
+    PowerCycle = 523 Error "power that runs in a circle",
+    NotConnected = 524 Error "an element that no wire reaches",
+    NeverRuns = 525 Warning "a program that no task runs",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",
     TooManyWarnings = 603 Warning "too many warnings",
+    NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",

@@ -7,7 +7,7 @@ mod declarations;
 mod elements;
 mod expressions;
 mod lexer;
-mod literals;
+pub(super) mod literals;
 mod parser;
 mod print;
 mod rungs;

@@ -6,9 +6,9 @@ use crate::source::Span;
 
 /// Why a literal cannot be read, and what to write instead.
 #[derive(PartialEq, Eq, Debug)]
-pub(super) struct Problem {
-    pub(super) message: String,
-    pub(super) hint: Option<&'static str>,
+pub(in crate::frontend) struct Problem {
+    pub(in crate::frontend) message: String,
+    pub(in crate::frontend) hint: Option<&'static str>,
 }
 
 impl Problem {
@@ -22,7 +22,7 @@ impl Problem {
 }
 
 /// A literal, and whether a minus sign stands behind its type (`INT#-5`), which is then an operator on it.
-pub(super) fn literal(text: &str) -> Result<(bool, Literal), Problem> {
+pub(in crate::frontend) fn literal(text: &str) -> Result<(bool, Literal), Problem> {
     let Some((prefix, rest)) = text.split_once('#') else {
         return Ok((false, number(text, None)?));
     };
@@ -180,7 +180,7 @@ fn duration(text: &str) -> Result<i64, Problem> {
 }
 
 /// An address such as `%IX0.3`.
-pub(super) fn address(text: &str, span: Span) -> Result<Address, Problem> {
+pub(in crate::frontend) fn address(text: &str, span: Span) -> Result<Address, Problem> {
     let form = || Problem::new("this is not an address").hint("an address looks like %IX0.3, %QW2 or %MD4");
     let mut letters = text.chars().skip(1).peekable();
     let area = match letters.next().map(|letter| letter.to_ascii_uppercase()) {
