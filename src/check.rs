@@ -3,11 +3,13 @@
 //! Names, types, addresses and structure are resolved here and nowhere later. Checking must never stop at the
 //! first error, and must never change what a program means. In order:
 //!
-//! 1. `declare`: the declared names, their types and addresses, then their initial values.
-//! 2. `collect`: what the rungs declare by use (instances, addresses), and how deep they nest.
+//! 1. `declare`, `type_table`, `initial`: types, then the declared names of all units with their types and addresses, then their
+//!    initial values.
+//! 2. `collect`: what the rungs declare by use (instances, addresses, registers), and how deep they nest.
 //! 3. `address`: which addresses share storage, and which overlap.
-//! 4. `network`, `jump`, `block`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by element.
-//! 5. `usage`: what only the whole program shows, such as unused names and double coils.
+//! 4. `network`, `jump`, `block`, `statement`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by element.
+//! 5. `usage`, `unit`: what only the whole program shows, such as unused names, double coils, and calls in a circle.
+//! 6. `configuration`: tasks, program instances and the register machine.
 //!
 //! Rungs that are off are checked like the others, and what they name counts as used; but they are not in the
 //! checked program, and their coils and calls do not collide with those of rungs that run.
@@ -15,11 +17,13 @@
 mod address;
 mod block;
 mod collect;
+mod configuration;
 mod constant;
 mod declare;
 mod expression;
 mod fold;
 mod function;
+mod initial;
 mod jump;
 mod model;
 mod network;
@@ -27,7 +31,10 @@ mod place;
 mod report;
 mod scope;
 pub(crate) mod spelling;
+mod statement;
+mod type_table;
 mod types;
+mod unit;
 mod usage;
 
 #[cfg(test)]
@@ -35,17 +42,26 @@ mod tests;
 
 pub use collect::MAXIMUM_DEPTH;
 pub use model::{
-    Branch, Call, Checked, Circuit, Element, Expression, ExpressionKind, Input, NodeId, PinId, Place, Rung, RungIndex,
-    Type, Variable, VariableId, Wire,
+    ArrayType, ArrayTypeId, Branch, Call, Callee, Checked, Circuit, Dimension, Element, Expression, ExpressionKind,
+    Field, Index, Initial, Input, NodeId, Output, PinId, Place, ProgramInstance, Rung, RungIndex, Statement, Step,
+    Structure, StructureId, Task, TaskId, Type, Unit, UnitId, UnitKind, Variable, VariableId, Wire,
 };
 pub use report::MOST_REPORTED;
+pub use type_table::MOST_ELEMENTS;
+pub use unit::MOST_INLINED;
+
+use std::collections::HashSet;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
 
+use collect::Direct;
+use configuration::Resources;
 use jump::Labels;
 use report::Report;
 use scope::Scope;
+use type_table::TypeTable;
+use unit::Signature;
 use usage::Usage;
 
 /// Checks a program: the checked program exactly where there is no error, and everything there is to say about it, in
@@ -54,18 +70,39 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     let mut checker = Checker {
         program,
         report: Report::default(),
+        types: TypeTable::default(),
+        units: Vec::new(),
         scope: Scope::default(),
+        registers: Resources::default(),
+        direct: Direct::default(),
+        too_deep: HashSet::new(),
+        loops: 0,
         usage: Usage::default(),
         labels: Labels::default(),
     };
     checker.declare_variables();
-    let too_deep = checker.collect_uses();
     checker.check_overlaps();
-    let rungs = checker.check_rungs(&too_deep);
-    checker.check_usage(too_deep.is_empty());
-    let Checker { report, scope, .. } = checker;
+    checker.check_register_count();
+    let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
+    checker.check_calls_end();
+    let (tasks, programs) = checker.check_tasks();
+    checker.check_unused();
+    let Checker { report, scope, types, units, .. } = checker;
     let (runs, diagnostics) = report.finish();
-    let checked = runs.then(|| Checked { name: program.name.text.clone(), variables: scope.into_variables(), rungs });
+    let checked = runs.then(|| {
+        let (variables, globals) = scope.into_variables();
+        let units = program.units.iter().zip(units).zip(rungs);
+        Checked {
+            name: program.name.text.clone(),
+            arrays: types.arrays,
+            structures: types.structures,
+            variables,
+            globals,
+            units: units.map(|((drawn, signature), rungs)| unit::checked(drawn, signature, rungs)).collect(),
+            tasks,
+            programs,
+        }
+    });
     (checked, diagnostics)
 }
 
@@ -73,7 +110,16 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
 struct Checker<'p> {
     program: &'p Program,
     report: Report,
+    types: TypeTable,
+    /// The units as their callers see them.
+    units: Vec<Signature>,
     scope: Scope,
+    registers: Resources,
+    direct: Direct,
+    /// Units and rungs that are nested too deeply to be checked.
+    too_deep: HashSet<(usize, usize)>,
+    /// The FORs around what is being checked.
+    loops: u32,
     usage: Usage,
     labels: Labels,
 }

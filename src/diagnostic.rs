@@ -81,6 +81,7 @@ codes! {
     UnknownPin = 305 Error "a pin that the block has not",
     UnknownMember = 306 Error "a member that there is not",
     UnknownFunction = 307 Error "a function that is not known",
+    RecursiveUnit = 308 Error "a type, block or function that holds or calls itself",
     // Types and values.
     TypeMismatch = 401 Error "a value of another type was expected",
     OutOfRange = 402 Error "a value outside the range of its type",
@@ -102,6 +103,8 @@ codes! {
     RetainedInput = 509 Error "an input cannot be retained",
     BackwardJump = 510 Error "a jump to its own rung or an earlier one",
     MisplacedJump = 511 Error "a jump where none can stand",
+    NoMemoryHere = 512 Error "something that remembers, in a function",
+    BadResource = 513 Error "a task, program instance or resource that cannot be",
     DanglingConnection = 521 Error "a wire from an element that there is not",
     DuplicateId = 522 Error "two elements of one id",
     PowerCycle = 523 Error "power that runs in a circle",
@@ -111,6 +114,8 @@ codes! {
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",
     TooManyWarnings = 603 Warning "too many warnings",
+    TooManyElements = 604 Error "arrays with too many elements",
+    TooLargeInlined = 605 Error "too much is called within calls",
     NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",

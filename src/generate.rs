@@ -20,7 +20,8 @@ use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{
     Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
-    Literal, Name, Origin, Program, Reference, Root, Rung, Variable, VariableClass, Wire, TypeReference};
+    Literal, Name, Origin, Program, Reference, Root, Rung, TypeReference, Variable, VariableClass, Wire,
+};
 use crate::source::Span;
 
 /// The most contacts that a program may have on average: beyond it, its text would be too large to be a source.

@@ -90,7 +90,8 @@ pub struct Program {
 impl Program {
     /// A source that declares one program and nothing else.
     pub fn of_one(origin: Origin, name: Name, variables: Vec<Variable>, rungs: Vec<Rung>) -> Self {
-        let unit = Unit { kind: UnitKind::Program { task: None }, name: name.clone(), variables, rungs, span: name.span };
+        let unit =
+            Unit { kind: UnitKind::Program { task: None }, name: name.clone(), variables, rungs, span: name.span };
         Self { units: vec![unit], ..Self::empty(origin, name) }
     }
 

@@ -31,9 +31,9 @@ pub fn lower(checked: &Checked, source: &Source, earlier: Option<&EarlierLayout>
         edges: slots.edges.iter(),
         slots: &slots,
         jumps: Jumps::default(),
-        end: RungIndex(u32::try_from(checked.rungs().len()).unwrap_or(u32::MAX)),
+        end: RungIndex(u32::try_from(checked.units()[0].rungs.len()).unwrap_or(u32::MAX)),
     };
-    for (index, rung) in (0..).zip(checked.rungs()) {
+    for (index, rung) in (0..).zip(&checked.units()[0].rungs) {
         lowering.land(RungIndex(index));
         lowering.rung(rung);
         lowering.logic.end_section(Origin { label: rung.label.clone(), line: line(rung.span) });

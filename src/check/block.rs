@@ -1,209 +1,438 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
-use super::model::{Call, Circuit, Input, PinId, Place, Type, VariableId, Wire};
+use super::model::{Call, Callee, Circuit, Index, Input, Output, Place, Step, Type, UnitId, Wire};
 use super::network::{Power, Walk};
-use super::place::list;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
-use crate::ladder::library::StandardBlock;
+use crate::ladder::library::{StandardBlock, Takes};
 use crate::ladder::{self, BlockCall, Name};
 use crate::source::Span;
 
-impl Checker<'_> {
-    pub(super) fn call(&mut self, call: &BlockCall, span: Span, walk: &mut Walk) -> Option<Call> {
-        let named = call.type_name.as_ref().map(|name| self.block_named(name));
-        let instance = self.lookup(&call.instance, || {
-            Some(format!("declare the instance by its use, as in `{}:TON(PT := T#1s)`", call.instance.text))
-        });
-        let declared = instance.and_then(|id| self.instance_type(id, call, named.flatten()));
-        if let Some(id) = instance {
-            self.note_call(id, span, walk);
+/// A pin of a standard block or of a unit, as calls see it.
+#[derive(Clone)]
+pub(super) struct Pin {
+    name: String,
+    ty: Type,
+    /// The range of its constants.
+    range: Option<(i64, i64)>,
+    takes: Takes,
+    /// Its place among the references of a unit, if it is one; else among inputs or outputs.
+    place: usize,
+}
+
+/// What is called, as calls see it.
+pub(super) struct Pins {
+    /// The type's name.
+    name: String,
+    inputs: Vec<Pin>,
+    outputs: Vec<Pin>,
+}
+
+impl Pins {
+    fn of_block(block: StandardBlock) -> Self {
+        let pin = |(place, pin): (usize, &crate::ladder::library::Pin)| Pin {
+            name: pin.name.to_owned(),
+            ty: Type::Elementary(pin.ty),
+            range: pin.range,
+            takes: pin.takes,
+            place,
+        };
+        Self {
+            name: block.name().to_owned(),
+            inputs: block.inputs().iter().enumerate().map(pin).collect(),
+            outputs: block.outputs().iter().enumerate().map(pin).collect(),
         }
-        let Some(block) = declared.or(named.flatten()) else {
+    }
+
+    fn find<'a>(pins: &'a [Pin], name: &str) -> Option<&'a Pin> {
+        let wanted = ladder::key(name);
+        pins.iter().find(|pin| ladder::key(&pin.name) == wanted)
+    }
+
+    fn list<'a>(pins: impl Iterator<Item = &'a Pin>) -> String {
+        pins.map(|pin| format!("`{}`", pin.name)).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The wires of a call, sorted by what they are for.
+#[derive(Default)]
+pub(super) struct Wired {
+    pub(super) enable: Option<Wire>,
+    pub(super) inputs: Vec<Input>,
+    pub(super) references: Vec<(usize, Place)>,
+    pub(super) outputs: Vec<(Output, Place)>,
+    /// The pins that are wired, each with the first place.
+    seen: Vec<(String, Span)>,
+}
+
+/// What a call calls.
+struct Called {
+    pins: Pins,
+    /// None where the instance has a fault, which was reported.
+    callee: Option<Callee>,
+}
+
+/// Where in a call an argument goes.
+enum Target<'a> {
+    Enable,
+    Enabled,
+    Input(&'a Pin),
+    Output(&'a Pin),
+}
+
+impl Checker<'_> {
+    /// A call; `in_circuit` if there is power on its left. Calls nest in circuits at pins, so that what is not needed while the
+    /// arguments are checked has functions of its own.
+    pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Call> {
+        let Some(called) = self.called_block(call, span, walk) else {
             self.arguments_of_unknown(call, walk);
             return None;
         };
-        let mut inputs = Vec::new();
-        let mut outputs = Vec::new();
-        let mut wired: Vec<(PinId, Span)> = Vec::new();
-        for argument in &call.arguments {
-            let pin = self.pin(block, argument, &mut wired);
-            match &argument.wire {
-                ladder::Wire::Output(target) => outputs.extend(self.output(block, pin, target)),
-                wire => inputs.extend(self.input(block, pin, wire, walk)),
-            }
+        let wired = self.arguments(&called.pins, call, walk);
+        self.finish_call(call, span, in_circuit, called, wired)
+    }
+
+    /// What is called, as far as it can be made out.
+    fn called_block(&mut self, call: &BlockCall, span: Span, walk: &mut Walk) -> Option<Box<Called>> {
+        let named = call.type_name.as_ref().and_then(|name| self.block_named(name));
+        let instance = self.instance(call);
+        let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named));
+        if let Some((place, _)) = &instance {
+            self.note_call(place, span, walk);
         }
-        let first = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
-        let power_input = first.filter(|pin| !wired.iter().any(|(wired, _)| *wired == PinId::Input(*pin)));
-        let power_output = match &call.power_output {
-            Some(name) => Some(self.power_output(block, name)?),
-            None => block.outputs().iter().position(|pin| pin.ty == Elementary::Bool),
+        let ty = declared.or(named)?;
+        let pins = match ty {
+            Type::Block(block) => Pins::of_block(block),
+            Type::Unit(unit) => self.pins_of_unit(unit),
+            _ => return None,
         };
         // Without a declaration, or with another one, the call was reported.
-        Some(Call {
-            instance: instance.filter(|_| declared == Some(block))?,
-            block,
-            power_input,
-            inputs,
-            outputs,
-            power_output,
-        })
+        let callee = instance.filter(|_| declared == Some(ty)).and_then(|(place, _)| match ty {
+            Type::Unit(unit) => Some(Callee::Unit(unit, place)),
+            Type::Block(block) => Some(Callee::Standard(block, place)),
+            _ => None,
+        });
+        Some(Box::new(Called { pins, callee }))
+    }
+
+    fn arguments(&mut self, pins: &Pins, call: &BlockCall, walk: &mut Walk) -> Box<Wired> {
+        let mut wired = Box::default();
+        for argument in &call.arguments {
+            self.argument(pins, argument, &mut wired, walk);
+        }
+        wired
+    }
+
+    fn finish_call(
+        &mut self,
+        call: &BlockCall,
+        span: Span,
+        in_circuit: bool,
+        called: Box<Called>,
+        wired: Box<Wired>,
+    ) -> Option<Call> {
+        let Called { pins, callee } = *called;
+        let Wired { enable, inputs, references, outputs, seen } = *wired;
+        self.check_missing(&pins, &seen, call);
+        let is_wired = |pin: &Pin| seen.iter().any(|(name, _)| *name == ladder::key(&pin.name));
+        let is_bool = |pin: &&Pin| pin.ty == Type::Elementary(Elementary::Bool);
+        let first = pins.inputs.iter().filter(|pin| pin.takes == Takes::Value).find(is_bool);
+        let power_input = first.filter(|pin| in_circuit && !is_wired(pin)).map(|pin| pin.place);
+        let power_output = match &call.power_output {
+            Some(name) => self.power_output(&pins, name)?,
+            None => pins.outputs.iter().find(is_bool).map_or(Output::Eno, |pin| Output::Pin(pin.place)),
+        };
+        let callee = callee?;
+        if let Callee::Unit(unit, _) = callee {
+            self.note_unit_call(unit, span);
+        }
+        Some(Call { callee, enable, power_input, inputs, references, outputs, power_output })
+    }
+
+    /// The place that is called.
+    fn instance(&mut self, call: &BlockCall) -> Option<(Place, Type)> {
+        if let Some(name) = call.instance.as_name() {
+            self.lookup(name, || {
+                Some(format!("declare the instance by its use, as in `{}:TON(PT := T#1s)`", name.text))
+            })?;
+        }
+        let (place, ty) = self.place(&call.instance)?;
+        let computed = |step: &Step| match step {
+            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
+            _ => false,
+        };
+        if self.loops == 0 && place.path.iter().any(computed) {
+            let message = "an instance cannot be chosen while the program runs";
+            let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
+            self.report.push(problem.hint("its index must be a constant, or depend on the variable of a FOR alone"));
+            return None;
+        }
+        Some((place, ty))
     }
 
     /// The block type of that name.
-    fn block_named(&mut self, name: &Name) -> Option<StandardBlock> {
-        match self.type_named(name)? {
-            Type::Block(block) => Some(block),
-            Type::Elementary(ty) => {
-                let message = format!("{ty} is a data type, not a block");
-                self.report.push(Diagnostic::new(Code::TypeMismatch, name.span, message));
-                None
-            }
+    fn block_named(&mut self, name: &Name) -> Option<Type> {
+        let (ty, _) = self.type_named(name)?;
+        if matches!(ty, Type::Block(_) | Type::Unit(_)) {
+            return Some(ty);
         }
-    }
-
-    /// The block that an instance is of, which must be the one that the call names.
-    fn instance_type(
-        &mut self,
-        id: VariableId,
-        call: &BlockCall,
-        named: Option<StandardBlock>,
-    ) -> Option<StandardBlock> {
-        let variable = &self.scope.entry(id).variable;
-        let (message, span) = match (variable.ty, named) {
-            (Type::Block(block), named) if named.is_none_or(|named| named == block) => return Some(block),
-            (Type::Block(block), _) => {
-                let span = call.type_name.as_ref().map_or(call.instance.span, |name| name.span);
-                let article = types::with_article(block.name());
-                (format!("`{}` is {article} elsewhere", call.instance.text), span)
-            }
-            (Type::Elementary(ty), _) => {
-                let article = types::with_article(ty.name());
-                (format!("`{}` is {article}, not a block instance", call.instance.text), call.instance.span)
-            }
-        };
-        let problem = Diagnostic::new(Code::TypeMismatch, span, message).related(variable.span, "declared here");
-        self.report.push(problem);
+        let message = format!("{} is a data type, not a block", self.type_name(ty));
+        self.report.push(Diagnostic::new(Code::TypeMismatch, name.span, message));
         None
     }
 
+    /// The block that an instance is of, which must be the one that the call names.
+    fn instance_type(&mut self, place: &Place, ty: Type, call: &BlockCall, named: Option<Type>) -> Option<Type> {
+        let is_block = matches!(ty, Type::Block(_) | Type::Unit(_));
+        if is_block && named.is_none_or(|named| named == ty) {
+            return Some(ty);
+        }
+        let instance = self.source_of(&call.instance);
+        let article = types::with_article(&self.type_name(ty));
+        let (message, span) = if is_block {
+            let span = call.type_name.as_ref().map_or(call.instance.span, |name| name.span);
+            (format!("`{instance}` is {article} elsewhere"), span)
+        } else {
+            (format!("`{instance}` is {article}, not a block instance"), call.instance.span)
+        };
+        let declared = self.scope.entry(place.variable).variable.span;
+        self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).related(declared, "declared here"));
+        None
+    }
+
+    /// The pins of a unit, its references at the end of its inputs.
+    fn pins_of_unit(&self, unit: UnitId) -> Pins {
+        let signature = &self.units[unit.index()];
+        let pins = |ids: &[super::VariableId], takes: Takes| -> Vec<Pin> {
+            let pin = |(place, id): (usize, &super::VariableId)| {
+                let variable = &self.scope.entry(*id).variable;
+                Pin { name: variable.name.clone(), ty: variable.ty, range: None, takes, place }
+            };
+            ids.iter().enumerate().map(pin).collect()
+        };
+        let mut inputs = pins(&signature.inputs, Takes::Value);
+        inputs.extend(pins(&signature.references, Takes::Reference));
+        Pins { name: self.type_name(Type::Unit(unit)), inputs, outputs: pins(&signature.outputs, Takes::Value) }
+    }
+
     /// What is wrong in the arguments whatever the block.
-    fn arguments_of_unknown(&mut self, call: &BlockCall, walk: &mut Walk) {
+    pub(super) fn arguments_of_unknown(&mut self, call: &BlockCall, walk: &mut Walk) {
         for argument in &call.arguments {
             match &argument.wire {
                 ladder::Wire::Value(value) => drop(self.operand(value)),
                 ladder::Wire::Circuit(circuit) => drop(self.pin_circuit(circuit, walk)),
-                ladder::Wire::Output(target) => drop(self.write(target)),
+                ladder::Wire::Output(target) => drop(self.written(target)),
             }
+        }
+    }
+
+    /// Sorts in what is wired by one argument.
+    fn argument(&mut self, pins: &Pins, argument: &ladder::Argument, wired: &mut Wired, walk: &mut Walk) {
+        let target = self.target(pins, argument, &mut wired.seen);
+        match (&argument.wire, target) {
+            (ladder::Wire::Output(reference), target) => self.output_argument(target, reference, wired),
+            (wire, Some(Target::Enable)) => wired.enable = self.wire(wire, Type::Elementary(Elementary::Bool), walk),
+            (wire, Some(Target::Input(pin))) if pin.takes == Takes::Reference => {
+                wired.references.extend(self.reference_pin(pin, wire, walk).map(|place| (pin.place, place)));
+            }
+            (wire, Some(Target::Input(pin))) => {
+                let wire = self.wire(wire, pin.ty, walk).filter(|wire| self.check_constant(pin, wire, argument.span));
+                wired.inputs.extend(wire.map(|wire| Input { pin: pin.place, wire }));
+            }
+            (ladder::Wire::Value(value), _) => drop(self.operand(value)),
+            (ladder::Wire::Circuit(circuit), _) => drop(self.pin_circuit(circuit, walk)),
+        }
+    }
+
+    fn output_argument(&mut self, target: Option<Target<'_>>, reference: &ladder::Reference, wired: &mut Wired) {
+        match target {
+            Some(Target::Output(pin)) => {
+                wired.outputs.extend(self.output(pin, reference).map(|place| (Output::Pin(pin.place), place)));
+            }
+            Some(Target::Enabled) => {
+                let ty = Type::Elementary(Elementary::Bool);
+                let eno = Pin { name: "ENO".to_owned(), ty, range: None, takes: Takes::Value, place: 0 };
+                wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
+            }
+            _ => drop(self.written(reference)),
         }
     }
 
     /// The pin that an argument is wired to.
-    fn pin(
+    fn target<'a>(
         &mut self,
-        block: StandardBlock,
+        pins: &'a Pins,
         argument: &ladder::Argument,
-        wired: &mut Vec<(PinId, Span)>,
-    ) -> Option<PinId> {
+        seen: &mut Vec<(String, Span)>,
+    ) -> Option<Target<'a>> {
         let name = &argument.pin.text;
-        let (input, output) = (block.input(name).map(PinId::Input), block.output(name).map(PinId::Output));
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
-        let (pin, other) = if is_output { (output, input) } else { (input, output) };
-        let Some(pin) = pin else {
-            let (what, pins) = if is_output { ("output", block.outputs()) } else { ("input", block.inputs()) };
-            let message = format!("{} has no {what} `{name}`", block.name());
-            let hint = match other {
-                Some(_) if is_output => format!("`{name}` is an input: write `{name} := value`"),
-                Some(_) => format!("`{name}` is an output: write `{name} => variable`"),
-                None => format!("its {what}s are {}", list(pins)),
-            };
-            self.report.push(Diagnostic::new(Code::UnknownPin, argument.pin.span, message).hint(hint));
-            return None;
+        let (input, output) = (Pins::find(&pins.inputs, name), Pins::find(&pins.outputs, name));
+        let found = match (is_output, input, output) {
+            (false, Some(pin), _) => Target::Input(pin),
+            (true, _, Some(pin)) => Target::Output(pin),
+            (false, None, None) if name.eq_ignore_ascii_case("EN") => Target::Enable,
+            (true, None, None) if name.eq_ignore_ascii_case("ENO") => Target::Enabled,
+            (_, input, output) => {
+                let (what, all) = if is_output { ("output", &pins.outputs) } else { ("input", &pins.inputs) };
+                let message = format!("{} has no {what} `{name}`", pins.name);
+                let hint = match (input, output) {
+                    (Some(_), _) => format!("`{name}` is an input: write `{name} := value`"),
+                    (_, Some(_)) => format!("`{name}` is an output: write `{name} => variable`"),
+                    (None, None) => format!("its {what}s are {}", Pins::list(all.iter())),
+                };
+                self.report.push(Diagnostic::new(Code::UnknownPin, argument.pin.span, message).hint(hint));
+                return None;
+            }
         };
-        if let Some((_, first)) = wired.iter().find(|(wired, _)| *wired == pin) {
+        let key = ladder::key(name);
+        if let Some((_, first)) = seen.iter().find(|(other, _)| *other == key) {
             let problem = Diagnostic::new(Code::DuplicatePin, argument.pin.span, format!("`{name}` is wired twice"));
             self.report.push(problem.related(*first, "wired first here"));
         } else {
-            wired.push((pin, argument.span));
+            seen.push((key, argument.span));
         }
-        Some(pin)
+        Some(found)
     }
 
-    fn input(
-        &mut self,
-        block: StandardBlock,
-        pin: Option<PinId>,
-        wire: &ladder::Wire,
-        walk: &mut Walk,
-    ) -> Option<Input> {
-        let pin = match pin {
-            Some(PinId::Input(pin)) => Some((pin, block.inputs()[pin].ty)),
-            _ => None,
-        };
-        let wire = match (wire, pin) {
-            (ladder::Wire::Value(value), Some((_, ty))) => Wire::Value(self.value(value, ty)?),
-            (ladder::Wire::Value(value), None) => return self.operand(value).and(None),
+    /// Reports what has to be wired and is not.
+    fn check_missing(&mut self, pins: &Pins, seen: &[(String, Span)], call: &BlockCall) {
+        for pin in pins.inputs.iter().filter(|pin| pin.takes != Takes::Value) {
+            if !seen.iter().any(|(name, _)| *name == ladder::key(&pin.name)) {
+                let what = if pin.takes == Takes::Constant { "a constant" } else { "a variable" };
+                let message = format!("`{}` of {} has to be given {what}", pin.name, pins.name);
+                self.report.push(Diagnostic::new(Code::WrongArguments, call.instance.span, message));
+            }
+        }
+    }
+
+    /// What is wired to an input of a type.
+    fn wire(&mut self, wire: &ladder::Wire, ty: Type, walk: &mut Walk) -> Option<Wire> {
+        match (wire, ty) {
+            (ladder::Wire::Value(value), Type::Elementary(ty)) => self.value(value, ty).map(Wire::Value),
+            (ladder::Wire::Value(value), _) => {
+                let message = format!("{} is handed over by reference only", types::with_article(&self.type_name(ty)));
+                let problem = Diagnostic::new(Code::TypeMismatch, value.span, message);
+                self.report.push(problem.hint("declare the pin as `inout`"));
+                None
+            }
             (ladder::Wire::Circuit(circuit), _) => {
                 let checked = self.pin_circuit(circuit, walk);
-                let (_, ty) = pin?;
-                if ty != Elementary::Bool {
-                    let message =
-                        format!("a circuit gives a BOOL, and the pin takes {}", types::with_article(ty.name()));
-                    let problem = Diagnostic::new(Code::TypeMismatch, circuit.span, message);
-                    self.report.push(problem.hint("wire an expression, without brackets"));
-                    return None;
-                }
-                Wire::Circuit(checked)
+                self.takes_circuit(ty, circuit.span).then_some(Wire::Circuit(checked))
             }
-            (ladder::Wire::Output(_), _) => return None,
-        };
-        pin.map(|(pin, _)| Input { pin, wire })
+            (ladder::Wire::Output(_), _) => None,
+        }
     }
 
-    fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
+    /// Whether a pin takes a circuit.
+    fn takes_circuit(&mut self, ty: Type, span: Span) -> bool {
+        let takes = ty == Type::Elementary(Elementary::Bool);
+        if !takes {
+            let article = types::with_article(&self.type_name(ty));
+            let message = format!("a circuit gives a BOOL, and the pin takes {article}");
+            let problem = Diagnostic::new(Code::TypeMismatch, span, message);
+            self.report.push(problem.hint("wire an expression, without brackets"));
+        }
+        takes
+    }
+
+    /// Whether a pin takes what is wired to it as far as it is a constant, or has to be one.
+    fn check_constant(&mut self, pin: &Pin, wire: &Wire, span: Span) -> bool {
+        let constant = match wire {
+            Wire::Value(value) => value.constant(),
+            Wire::Circuit(_) => None,
+        };
+        let Some(value) = constant.and_then(|value| value.as_integer()) else {
+            if pin.takes == Takes::Constant {
+                let message = format!("`{}` takes a constant", pin.name);
+                self.report.push(Diagnostic::new(Code::NotConstant, span, message));
+            }
+            return pin.takes != Takes::Constant;
+        };
+        let Some((least, greatest)) = pin.range else { return true };
+        let fits = (i128::from(least)..=i128::from(greatest)).contains(&value);
+        if !fits {
+            let message = format!("`{}` takes {least} to {greatest}, and this is {value}", pin.name);
+            self.report.push(Diagnostic::new(Code::OutOfRange, span, message));
+        }
+        fits
+    }
+
+    /// The variable that a reference stands for.
+    fn reference_pin(&mut self, pin: &Pin, wire: &ladder::Wire, walk: &mut Walk) -> Option<Place> {
+        let ladder::Wire::Value(value) = wire else {
+            if let ladder::Wire::Circuit(circuit) = wire {
+                self.pin_circuit(circuit, walk);
+            }
+            return None;
+        };
+        let ladder::ExpressionKind::Read(reference) = &value.kind else {
+            self.operand(value);
+            let message = format!("`{}` takes a variable, not a value", pin.name);
+            self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
+            return None;
+        };
+        let (place, ty) = self.written(reference)?;
+        if ty != pin.ty || place.bit.is_some() {
+            let [wants, found] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
+            let found = if place.bit.is_some() { "a single bit".to_owned() } else { found };
+            let message = format!("`{}` takes {wants}, and this is {found}", pin.name);
+            self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
+            return None;
+        }
+        Some(place)
+    }
+
+    pub(super) fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
         let around = std::mem::replace(&mut walk.in_pin, true);
         let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
         walk.in_pin = around;
         checked
     }
 
-    fn output(
-        &mut self,
-        block: StandardBlock,
-        pin: Option<PinId>,
-        target: &ladder::Reference,
-    ) -> Option<(usize, Place)> {
+    /// Where an output goes.
+    fn output(&mut self, pin: &Pin, target: &ladder::Reference) -> Option<Place> {
         let (place, ty) = self.write(target)?;
-        let Some(PinId::Output(pin)) = pin else { return None };
-        let output = block.outputs()[pin];
-        if ty != output.ty {
-            let [gives, takes] = [output.ty, ty].map(|ty| types::with_article(ty.name()));
-            let message = format!("`{}` gives {gives}, and this is {takes}", output.name);
+        let ty = Type::Elementary(ty);
+        if ty != pin.ty {
+            let [gives, takes] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
+            let message = format!("`{}` gives {gives}, and this is {takes}", pin.name);
             let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
-            self.report.push(
-                problem.hint(format!("an output goes to a variable of its own type; declare one of {}", output.ty)),
-            );
+            self.report.push(problem.hint(format!(
+                "an output goes to a variable of its own type; declare one of {}",
+                self.type_name(pin.ty)
+            )));
             return None;
         }
-        Some((pin, place))
+        Some(place)
     }
 
-    fn power_output(&mut self, block: StandardBlock, name: &Name) -> Option<usize> {
-        let bools = || block.outputs().iter().filter(|pin| pin.ty == Elementary::Bool).copied().collect::<Vec<_>>();
-        let problem = match block.output(&name.text) {
-            Some(pin) if block.outputs()[pin].ty == Elementary::Bool => return Some(pin),
+    fn power_output(&mut self, pins: &Pins, name: &Name) -> Option<Output> {
+        let bools = || Pins::list(pins.outputs.iter().filter(|pin| pin.ty == Type::Elementary(Elementary::Bool)));
+        let problem = match Pins::find(&pins.outputs, &name.text) {
+            Some(pin) if pin.ty == Type::Elementary(Elementary::Bool) => return Some(Output::Pin(pin.place)),
+            None if name.text.eq_ignore_ascii_case("ENO") => return Some(Output::Eno),
             Some(pin) => {
-                let article = types::with_article(block.outputs()[pin].ty.name());
+                let article = types::with_article(&self.type_name(pin.ty));
                 Diagnostic::new(Code::PowerNotTaken, name.span, format!("`{}` is {article}, not power", name.text))
-                    .hint(format!("power on the right comes from one of {}", list(&bools())))
+                    .hint(format!("power on the right comes from one of {}", bools()))
             }
             None => {
-                Diagnostic::new(Code::UnknownPin, name.span, format!("{} has no output `{}`", block.name(), name.text))
-                    .hint(format!("power on the right comes from one of {}", list(&bools())))
+                Diagnostic::new(Code::UnknownPin, name.span, format!("{} has no output `{}`", pins.name, name.text))
+                    .hint(format!("power on the right comes from one of {}", bools()))
             }
         };
         self.report.push(problem);
         None
+    }
+
+    /// A reference in words, for messages.
+    fn source_of(&self, reference: &ladder::Reference) -> String {
+        match (reference.as_name(), &reference.root) {
+            (Some(name), _) => name.text.clone(),
+            (None, ladder::Root::Name(name)) => format!("{}…", name.text),
+            (None, ladder::Root::Address(address)) => address.to_string(),
+        }
     }
 }

@@ -1,19 +1,35 @@
 //! What the rungs declare by use: block instances named with their type, and addresses. Also the guard of everything
 //! after it: no circuit or expression that is nested deeper than [`MAXIMUM_DEPTH`] may be walked by another stage.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::Checker;
-use super::address::{class_of, direct_type};
-use super::model::{Type, Variable};
+use super::address::{Extent, class_of, direct_type};
+use super::model::{ArrayType, Dimension, Initial, Type, Variable};
 use super::scope::State;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::elementary::{Elementary, Value};
-use crate::ladder::library::StandardBlock;
+use crate::elementary::Elementary;
 use crate::ladder::{
-    Address, BlockCall, Circuit, ElementKind, Expression, ExpressionKind, Reference, Root, VariableClass, Wire,
+    Address, BlockCall, Circuit, ElementKind, Expression, ExpressionKind, Literal, Reference, Root, Statement,
+    StatementKind, Step, VariableClass, Wire,
 };
 use crate::source::Span;
+
+/// The registers of the register machine, which their use declares.
+const REGISTERS: [(&str, VariableClass); 3] =
+    [("ireg", VariableClass::Input), ("oreg", VariableClass::Output), ("hreg", VariableClass::Memory)];
+
+/// How many registers a class has that is used by a computed index and whose size is nowhere said.
+const REGISTERS_BY_DEFAULT: i64 = 512;
+
+/// Addresses and registers that rungs use, and that no declaration may come to declare.
+#[derive(Default)]
+pub(super) struct Direct {
+    addresses: Vec<(Extent, Address)>,
+    known: HashMap<Extent, ()>,
+    /// For each class of registers, how many its uses need, and the first use.
+    registers: [Option<(i64, Span)>; 3],
+}
 
 /// How deep circuits and expressions may nest, counted together: more than the native text's limits on circuits and on
 /// expressions add up to.
@@ -27,16 +43,40 @@ fn deeper(depth: usize, span: Span) -> Result<usize, TooDeep> {
 }
 
 impl Checker<'_> {
-    /// Declares what the rungs declare by use. The result: those rungs that are nested too deeply to be checked.
-    pub(super) fn collect_uses(&mut self) -> HashSet<usize> {
-        let mut too_deep = HashSet::new();
-        for (index, rung) in self.program.rungs.iter().enumerate() {
+    /// Declares the instances that the rungs of a unit declare by use, and notes the addresses and registers, and the rungs that are
+    /// nested too deeply to be checked.
+    pub(super) fn collect_instances(&mut self, unit: usize) {
+        let program = self.program;
+        for (index, rung) in program.units[unit].rungs.iter().enumerate() {
             if let Err(problem) = self.collect_circuit(&rung.circuit, 0) {
                 self.report_depth(&problem);
-                too_deep.insert(index);
+                self.too_deep.insert((unit, index));
             }
         }
-        too_deep
+    }
+
+    /// Declares, as global variables, the addresses and registers that rungs use and nothing declares.
+    pub(super) fn declare_direct(&mut self) {
+        self.scope.enter(None);
+        let direct = std::mem::take(&mut self.direct);
+        for (extent, address) in direct.addresses {
+            if !self.scope.addresses.contains_key(&extent) {
+                let ty = Type::Elementary(direct_type(address.width));
+                let (name, span) = (address.to_string(), address.span);
+                let variable = variable(name, class_of(address.area), ty, Some(address), span);
+                let id = self.scope.add_nameless(variable, State::Known);
+                self.scope.addresses.insert(extent, id);
+            }
+        }
+        for ((name, class), used) in REGISTERS.into_iter().zip(direct.registers) {
+            let size = self.registers.size_of(class);
+            let Some((needed, span)) = used.or(size.map(|(_, span)| (0, span))) else { continue };
+            let count = u32::try_from(size.map_or(needed, |(size, _)| size)).unwrap_or(0).max(1);
+            let dimensions = vec![Dimension { first: 0, count }];
+            let ty = Type::Array(self.array(ArrayType { dimensions, element: Type::Elementary(Elementary::Word) }));
+            // One of that name was declared otherwise.
+            let _ = self.scope.add(variable(name.to_owned(), class, ty, None, span), State::Known);
+        }
     }
 
     /// As for a rung, for an initial value: whether it is shallow enough to be walked.
@@ -55,30 +95,72 @@ impl Checker<'_> {
         for element in circuit.branches.iter().flat_map(|branch| &branch.elements) {
             match &element.kind {
                 ElementKind::Contact { operand, .. } => self.collect_expression(operand, depth)?,
-                ElementKind::Coil { target, .. } => self.collect_reference(target),
+                ElementKind::Coil { target, .. } => self.collect_reference(target, depth)?,
                 ElementKind::Block(call) => self.collect_call(call, depth)?,
                 ElementKind::Condition(condition) => self.collect_expression(condition, depth)?,
                 ElementKind::Assignment { target, value } => {
-                    self.collect_reference(target);
+                    self.collect_reference(target, depth)?;
                     self.collect_expression(value, depth)?;
                 }
                 ElementKind::Parallel(circuit) => self.collect_circuit(circuit, depth)?,
+                ElementKind::Statements(statements) => self.collect_statements(statements, depth)?,
                 ElementKind::Jump { .. } | ElementKind::Return => {}
             }
         }
         Ok(())
     }
 
+    fn collect_statements(&mut self, statements: &[Statement], depth: usize) -> Result<(), TooDeep> {
+        for statement in statements {
+            let depth = deeper(depth, statement.span)?;
+            match &statement.kind {
+                StatementKind::Assignment { target, value } => {
+                    self.collect_reference(target, depth)?;
+                    self.collect_expression(value, depth)?;
+                }
+                StatementKind::Call(call) => self.collect_call(call, depth)?,
+                StatementKind::If { branches, otherwise } => {
+                    for branch in branches {
+                        self.collect_expression(&branch.condition, depth)?;
+                        self.collect_statements(&branch.body, depth)?;
+                    }
+                    self.collect_statements(otherwise, depth)?;
+                }
+                StatementKind::Case { selector, branches, otherwise } => {
+                    self.collect_expression(selector, depth)?;
+                    for branch in branches {
+                        for label in &branch.labels {
+                            self.collect_expression(&label.first, depth)?;
+                            label.last.iter().try_for_each(|last| self.collect_expression(last, depth))?;
+                        }
+                        self.collect_statements(&branch.body, depth)?;
+                    }
+                    self.collect_statements(otherwise, depth)?;
+                }
+                StatementKind::For { variable, first, last, step, body } => {
+                    self.collect_reference(variable, depth)?;
+                    for bound in [Some(first), Some(last), step.as_ref()].into_iter().flatten() {
+                        self.collect_expression(bound, depth)?;
+                    }
+                    self.collect_statements(body, depth)?;
+                }
+                StatementKind::Exit | StatementKind::Return => {}
+            }
+        }
+        Ok(())
+    }
+
     fn collect_call(&mut self, call: &BlockCall, depth: usize) -> Result<(), TooDeep> {
-        if let Some(type_name) = &call.type_name
-            && self.scope.find(&call.instance).is_none()
+        self.collect_reference(&call.instance, depth)?;
+        if let (Some(type_name), Some(instance)) = (&call.type_name, call.instance.as_name())
+            && self.scope.find(instance).is_none()
         {
             // What is wrong with the type is said where the call is checked.
-            let block = StandardBlock::from_name(&type_name.text);
-            let ty = block.map_or(Type::Elementary(Elementary::Bool), Type::Block);
+            let block = self.block_type(type_name);
+            let ty = block.unwrap_or(Type::Elementary(Elementary::Bool));
             let state = if block.is_some() { State::Known } else { State::Broken };
-            let name = call.instance.text.clone();
-            let variable = variable(name, VariableClass::Memory, ty, None, call.instance.span);
+            let name = instance.text.clone();
+            let variable = variable(name, VariableClass::Memory, ty, None, instance.span);
             // There was none of that name.
             let _ = self.scope.add(variable, state);
         }
@@ -86,7 +168,7 @@ impl Checker<'_> {
             match &argument.wire {
                 Wire::Value(value) => self.collect_expression(value, depth)?,
                 Wire::Circuit(circuit) => self.collect_circuit(circuit, depth)?,
-                Wire::Output(target) => self.collect_reference(target),
+                Wire::Output(target) => self.collect_reference(target, depth)?,
             }
         }
         Ok(())
@@ -96,7 +178,17 @@ impl Checker<'_> {
         let depth = deeper(depth, expression.span)?;
         match &expression.kind {
             ExpressionKind::Literal(_) => {}
-            ExpressionKind::Read(reference) => self.collect_reference(reference),
+            ExpressionKind::Read(reference) => self.collect_reference(reference, depth)?,
+            ExpressionKind::Array(items) => {
+                for expression in items.iter().flat_map(|item| item.repeat.iter().chain(&item.value)) {
+                    self.collect_expression(expression, depth)?;
+                }
+            }
+            ExpressionKind::Structure(members) => {
+                for member in members {
+                    self.collect_expression(&member.value, depth)?;
+                }
+            }
             ExpressionKind::Unary(_, operand) => self.collect_expression(operand, depth)?,
             ExpressionKind::Binary(_, left, right) => {
                 self.collect_expression(left, depth)?;
@@ -111,25 +203,47 @@ impl Checker<'_> {
         Ok(())
     }
 
-    fn collect_reference(&mut self, reference: &Reference) {
-        if let Root::Address(address) = &reference.root
-            && let Some(extent) = self.extent(address)
-            && !self.scope.addresses.contains_key(&extent)
-        {
-            let ty = Type::Elementary(direct_type(address.width));
-            let variable =
-                variable(address.to_string(), class_of(address.area), ty, Some(address.clone()), address.span);
-            let id = self.scope.add_nameless(variable, State::Known);
-            self.scope.addresses.insert(extent, id);
+    fn collect_reference(&mut self, reference: &Reference, depth: usize) -> Result<(), TooDeep> {
+        match &reference.root {
+            Root::Address(address) => {
+                if let Some(extent) = self.extent(address)
+                    && self.direct.known.insert(extent.clone(), ()).is_none()
+                {
+                    self.direct.addresses.push((extent, address.clone()));
+                }
+            }
+            Root::Name(name) => {
+                let class = REGISTERS.iter().position(|(register, _)| name.text.eq_ignore_ascii_case(register));
+                if let Some(class) = class
+                    && self.scope.find(name).is_none()
+                {
+                    let needed = registers_for(reference.steps.first());
+                    let (most, _) = self.direct.registers[class].get_or_insert((0, name.span));
+                    *most = needed.max(*most);
+                }
+            }
         }
+        for step in &reference.steps {
+            if let Step::Index(indices, _) = step {
+                indices.iter().try_for_each(|index| self.collect_expression(index, depth))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How many registers there must be for one to be named like this.
+fn registers_for(step: Option<&Step>) -> i64 {
+    let Some(Step::Index(indices, _)) = step else { return REGISTERS_BY_DEFAULT };
+    match indices.first().map(|index| &index.kind) {
+        Some(ExpressionKind::Literal(Literal::Integer { value, .. })) => {
+            i64::try_from(*value).ok().and_then(|index| index.checked_add(1)).unwrap_or(i64::MAX)
+        }
+        _ => REGISTERS_BY_DEFAULT,
     }
 }
 
 /// A variable that its first use declares.
 fn variable(name: String, class: VariableClass, ty: Type, address: Option<Address>, span: Span) -> Variable {
-    let initial = Value::default_of(match ty {
-        Type::Elementary(ty) => ty,
-        Type::Block(_) => Elementary::Bool,
-    });
-    Variable { name, class, ty, initial, retain: false, address, shares: None, span }
+    Variable { name, class, ty, initial: Initial::Default, retain: false, address, shares: None, span }
 }

@@ -2,14 +2,14 @@
 //! the initial values in order, so that a constant can use only those before it and never itself.
 
 use super::address::class_of;
-use super::model::{Type, Variable, VariableId};
+use super::model::{Initial, Type, UnitId, Variable, VariableId};
 use super::scope::State;
-use super::spelling::{self, Budget};
+use super::type_table::Typed;
+use super::unit::Signature;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::elementary::{Elementary, Value};
-use crate::ladder::library::StandardBlock;
-use crate::ladder::{self, Address, Area, Name, VariableClass};
+use crate::elementary::Elementary;
+use crate::ladder::{self, Address, Area, UnitKind, VariableClass};
 use crate::source::Span;
 
 fn class_name(class: VariableClass) -> &'static str {
@@ -18,58 +18,124 @@ fn class_name(class: VariableClass) -> &'static str {
         VariableClass::Output => "output",
         VariableClass::Memory => "variable",
         VariableClass::Constant => "constant",
+        VariableClass::InOut => "in-out variable",
+        VariableClass::Temporary => "temporary variable",
     }
 }
 
 impl Checker<'_> {
-    /// Declares what the program declares.
+    /// Declares the variables of all units and the global ones, and with them all types.
     pub(super) fn declare_variables(&mut self) {
         let program = self.program;
-        let ids: Vec<Option<VariableId>> = program.variables.iter().map(|variable| self.register(variable)).collect();
-        for (variable, id) in program.variables.iter().zip(ids) {
-            self.initialise(variable, id);
+        self.declare_types();
+        let globals = self.register(&program.globals);
+        self.resolve_types();
+        self.resolve_pending(&program.globals, &globals);
+        let mut units = Vec::with_capacity(program.units.len());
+        for (index, unit) in (0..).zip(&program.units) {
+            self.scope.enter(Some(UnitId(index)));
+            let start = self.scope.next_id();
+            let ids = self.declare_unit(unit);
+            self.collect_instances(index as usize);
+            self.units.push(Signature::new(start.0..self.scope.next_id().0));
+            units.push(ids);
         }
+        for (index, unit) in (0..).zip(&program.units) {
+            self.sign(UnitId(index), unit);
+        }
+        self.scope.enter(None);
+        self.check_registers();
+        self.declare_direct();
+        self.initialise_all(&program.globals, &globals);
+        for ((index, unit), ids) in (0..).zip(&program.units).zip(&units) {
+            self.scope.enter(Some(UnitId(index)));
+            self.initialise_all(&unit.variables, ids);
+        }
+        self.scope.enter(None);
         self.reconcile_initial_values();
     }
 
-    /// Declares all of a variable but its initial value.
-    fn register(&mut self, declared: &ladder::Variable) -> Option<VariableId> {
-        let ty = match &declared.type_name {
-            Some(name) => self.type_named(name),
-            None => Some(Type::Elementary(Elementary::Bool)),
-        };
-        let class = self.effective_class(declared);
-        if let Some(Type::Block(block)) = ty {
-            self.check_instance(declared, block);
-        } else if declared.retain && matches!(class, VariableClass::Input | VariableClass::Constant) {
-            let message = format!("the {} `{}` cannot be retained", class_name(class), declared.name.text);
-            let problem = Diagnostic::new(Code::RetainedInput, declared.name.span, message);
-            self.report.push(problem.hint("only what the program writes is worth keeping; leave `retain` out"));
+    /// Declares the variables of a unit, and of a function its result under its own name.
+    fn declare_unit(&mut self, unit: &ladder::Unit) -> Vec<Option<VariableId>> {
+        if let UnitKind::Function { result: Some(result) } = &unit.kind {
+            let typed = self.resolve(result);
+            let (ty, initial) = typed.clone().unwrap_or((Type::Elementary(Elementary::Bool), Initial::Default));
+            let name = unit.name.text.clone();
+            let variable = Variable {
+                name,
+                class: VariableClass::Output,
+                ty,
+                initial,
+                retain: false,
+                address: None,
+                shares: None,
+                span: unit.name.span,
+            };
+            if let Ok(id) = self.scope.add(variable, if typed.is_some() { State::Known } else { State::Broken }) {
+                self.scope.entry_mut(id).mentioned = true;
+            }
         }
-        let elementary = match ty {
-            Some(Type::Elementary(ty)) => Some(ty),
+        let ids = self.register(&unit.variables);
+        self.resolve_pending(&unit.variables, &ids);
+        ids
+    }
+
+    /// Declares names with what can be said at once: constants of elementary types get their values, since the bounds of
+    /// arrays may need them; types that are not elementary are resolved after.
+    fn register(&mut self, declared: &[ladder::Variable]) -> Vec<Option<VariableId>> {
+        let ids: Vec<Option<VariableId>> = declared.iter().map(|variable| self.register_one(variable)).collect();
+        for (variable, id) in declared.iter().zip(&ids) {
+            if variable.class == VariableClass::Constant && is_elementary(variable) {
+                self.initialise(variable, *id);
+            }
+        }
+        ids
+    }
+
+    /// The types that were left for later.
+    fn resolve_pending(&mut self, declared: &[ladder::Variable], ids: &[Option<VariableId>]) {
+        for (variable, id) in declared.iter().zip(ids) {
+            if let (Some(reference), false) = (&variable.ty, is_elementary(variable)) {
+                let typed = self.resolve(reference);
+                self.settle_type(variable, *id, typed);
+            }
+        }
+    }
+
+    /// The initial values but for those that are known already.
+    fn initialise_all(&mut self, declared: &[ladder::Variable], ids: &[Option<VariableId>]) {
+        for (variable, id) in declared.iter().zip(ids) {
+            if variable.class != VariableClass::Constant || !is_elementary(variable) {
+                self.initialise(variable, *id);
+            }
+        }
+    }
+
+    /// Declares all of a variable but its initial value and, if it is not elementary, its type.
+    fn register_one(&mut self, declared: &ladder::Variable) -> Option<VariableId> {
+        let ty = match &declared.ty {
+            Some(reference) if is_elementary(declared) => Elementary::from_name(&reference.name.text),
             _ => None,
         };
+        let class = self.effective_class(declared);
         let variable = Variable {
             name: declared.name.text.clone(),
             class,
-            ty: ty.unwrap_or(Type::Elementary(Elementary::Bool)),
-            initial: Value::default_of(elementary.unwrap_or(Elementary::Bool)),
+            ty: Type::Elementary(ty.unwrap_or(Elementary::Bool)),
+            initial: Initial::Default,
             retain: declared.retain,
             address: declared.address.clone(),
             shares: None,
             span: declared.name.span,
         };
-        let state = match (ty, class) {
-            (None, _) => State::Broken,
-            (Some(Type::Block(_)), class) if class != VariableClass::Memory => State::Broken,
-            (_, VariableClass::Constant) => State::Pending,
+        let state = match class {
+            VariableClass::Constant => State::Pending,
             _ => State::Known,
         };
         match self.scope.add(variable, state) {
             Ok(id) => {
-                if let (Some(address), Some(ty)) = (&declared.address, elementary) {
-                    self.place_at(id, address, ty);
+                if is_elementary(declared) {
+                    self.check_placement(declared, Some(id), Type::Elementary(ty.unwrap_or(Elementary::Bool)));
                 }
                 Some(id)
             }
@@ -78,35 +144,85 @@ impl Checker<'_> {
                 let first = self.scope.entry(first).variable.span;
                 let problem = Diagnostic::new(Code::DuplicateName, declared.name.span, message);
                 self.report.push(problem.related(first, "declared first here"));
+                if is_elementary(declared) {
+                    self.check_placement(declared, None, Type::Elementary(ty.unwrap_or(Elementary::Bool)));
+                }
                 None
             }
         }
     }
 
-    /// The type of that name.
-    pub(super) fn type_named(&mut self, name: &Name) -> Option<Type> {
-        let found = Elementary::from_name(&name.text)
-            .map(Type::Elementary)
-            .or_else(|| StandardBlock::from_name(&name.text).map(Type::Block));
-        if found.is_none() {
-            let names = Elementary::ALL.iter().map(|ty| ty.name()).chain(StandardBlock::ALL.iter().map(|ty| ty.name()));
-            let near = spelling::nearest(&name.text, names, &mut Budget::default());
-            let hint = near.map(|near| format!("did you mean `{near}`?"));
-            let problem = Diagnostic::new(Code::UnknownType, name.span, format!("there is no type `{}`", name.text));
-            self.report.push(Diagnostic { hint, ..problem });
+    /// Notes the type of a variable that was left for later; none where it is broken, which was reported.
+    fn settle_type(&mut self, declared: &ladder::Variable, id: Option<VariableId>, typed: Option<Typed>) {
+        let Some((ty, initial)) = typed else {
+            if let Some(id) = id {
+                self.scope.entry_mut(id).state = State::Broken;
+            }
+            return;
+        };
+        if let Some(id) = id {
+            let is_instance = self.holds_instance(ty);
+            let entry = self.scope.entry_mut(id);
+            (entry.variable.ty, entry.variable.initial) = (ty, initial);
+            // What is wrong with an instance that is no memory is said, and not at its uses again.
+            if is_instance && !matches!(declared.class, VariableClass::Memory | VariableClass::InOut) {
+                entry.state = State::Broken;
+            }
         }
-        found
+        self.check_placement(declared, id, ty);
+    }
+
+    /// What a declaration of this type cannot say, and its storage.
+    fn check_placement(&mut self, declared: &ladder::Variable, id: Option<VariableId>, ty: Type) {
+        let class = id.map_or(declared.class, |id| self.scope.entry(id).variable.class);
+        if self.holds_instance(ty) {
+            self.check_instance(declared, ty);
+        } else if declared.retain
+            && matches!(class, VariableClass::Input | VariableClass::Constant)
+            && self.is_program()
+        {
+            let message = format!("the {} `{}` cannot be retained", class_name(class), declared.name.text);
+            let problem = Diagnostic::new(Code::RetainedInput, declared.name.span, message);
+            self.report.push(problem.hint("only what the program writes is worth keeping; leave `retain` out"));
+        }
+        let (Some(address), Some(id)) = (&declared.address, id) else { return };
+        match ty {
+            Type::Elementary(ty) => self.place_at(id, address, ty),
+            Type::Array(_) | Type::Structure(_) => {
+                let message = format!("an array or structure cannot stand at `{address}`");
+                let problem = Diagnostic::new(Code::TypeMismatch, address.span, message);
+                self.report.push(problem.hint("give each value that the field has an address of its own"));
+            }
+            // That was said of the instance.
+            Type::Block(_) | Type::Unit(_) => {}
+        }
+    }
+
+    /// Whether names are now those of a program, or global.
+    pub(super) fn is_program(&self) -> bool {
+        let unit = self.scope.unit().map(|unit| &self.program.units[unit.index()].kind);
+        matches!(unit, None | Some(UnitKind::Program { .. }))
     }
 
     /// What a declaration declares, of which its address may be the part that says so.
     fn effective_class(&mut self, declared: &ladder::Variable) -> VariableClass {
         let Some(address) = &declared.address else { return declared.class };
+        if !self.is_program() {
+            let message =
+                format!("`{}` cannot stand at an address: each instance has storage of its own", declared.name.text);
+            let problem = Diagnostic::new(Code::AddressConflict, address.span, message);
+            self.report.push(problem.hint("declare it in the program, and wire it where the block is called"));
+            return declared.class;
+        }
         let hint = match (declared.class, address.area) {
             (VariableClass::Memory, area) => return class_of(area),
             (VariableClass::Input, Area::Input) | (VariableClass::Output, Area::Output) => return declared.class,
             (VariableClass::Input, _) => "inputs stand at `%I…`",
             (VariableClass::Output, _) => "outputs stand at `%Q…`",
             (VariableClass::Constant, _) => "a constant takes no storage; leave the address out",
+            (VariableClass::InOut | VariableClass::Temporary, _) => {
+                "only `input`, `output` and `var` stand at addresses"
+            }
         };
         let what = types::with_article(class_name(declared.class));
         let message = format!("{what} cannot stand at `{}`", address);
@@ -114,21 +230,35 @@ impl Checker<'_> {
         declared.class
     }
 
-    /// What a declaration of a block instance cannot say.
-    fn check_instance(&mut self, declared: &ladder::Variable, block: StandardBlock) {
-        let instance = format!("an instance of {}", block.name());
-        if declared.class != VariableClass::Memory {
+    /// What a declaration of a block instance, or of what holds one, cannot say.
+    fn check_instance(&mut self, declared: &ladder::Variable, ty: Type) {
+        let instance = format!("an instance of {}", self.type_name(ty));
+        if !matches!(declared.class, VariableClass::Memory | VariableClass::InOut) {
             let message = format!("{} cannot be {instance}", types::with_article(class_name(declared.class)));
             let problem = Diagnostic::new(Code::TypeMismatch, declared.name.span, message);
             self.report.push(problem.hint("declare it with `var`"));
+        } else if let Some(unit) = self.scope.unit()
+            && matches!(self.program.units[unit.index()].kind, UnitKind::Function { .. })
+            && declared.class == VariableClass::Memory
+        {
+            let message = format!("a function remembers nothing, and `{}` is {instance}", declared.name.text);
+            self.report.push(Diagnostic::new(Code::NoMemoryHere, declared.name.span, message));
         }
         if let Some(address) = &declared.address {
             let problem = Diagnostic::new(Code::TypeMismatch, address.span, format!("{instance} has no address"));
             self.report.push(problem.hint("wire one of its outputs to a variable at that address"));
         }
-        if let Some(initial) = &declared.initial {
-            let problem = Diagnostic::new(Code::TypeMismatch, initial.span, format!("{instance} has no initial value"));
-            self.report.push(problem.hint("wire its inputs where it is called"));
+    }
+
+    /// Whether a type is that of a block instance, or holds one.
+    pub(super) fn holds_instance(&self, ty: Type) -> bool {
+        match ty {
+            Type::Elementary(_) => false,
+            Type::Block(_) | Type::Unit(_) => true,
+            Type::Array(array) => self.holds_instance(self.types.arrays[array.index()].element),
+            Type::Structure(structure) => {
+                self.types.structures[structure.index()].fields.iter().any(|field| self.holds_instance(field.ty))
+            }
         }
     }
 
@@ -145,7 +275,7 @@ impl Checker<'_> {
         self.scope.entry_mut(id).variable.shares = Some(first);
         let [first, second] = [first, id].map(|id| &self.scope.entry(id).variable);
         if first.ty != second.ty {
-            let what = format!("{} and {}", first.ty.name(), second.ty.name());
+            let what = format!("{} and {}", self.type_name(first.ty), self.type_name(second.ty));
             self.sharing_conflict(first.span, address.span, &second.name.clone(), &what);
         } else if first.retain != second.retain {
             self.sharing_conflict(first.span, address.span, &second.name.clone(), "only one of them with `retain`");
@@ -168,8 +298,8 @@ impl Checker<'_> {
         let known = id.filter(|id| self.scope.entry(*id).state != State::Broken);
         let ty = known.map(|id| self.scope.entry(id).variable.ty);
         match (&declared.initial, ty) {
-            (Some(initial), Some(Type::Elementary(ty))) => {
-                let value = self.initial_value(declared, initial, ty);
+            (Some(initial), Some(ty)) => {
+                let value = self.declared_initial(declared, initial, ty);
                 self.settle(id, value);
             }
             // Only for the names in it.
@@ -186,30 +316,8 @@ impl Checker<'_> {
         }
     }
 
-    fn initial_value(
-        &mut self,
-        declared: &ladder::Variable,
-        initial: &ladder::Expression,
-        ty: Elementary,
-    ) -> Option<Value> {
-        let (name, operand) = (&declared.name.text, self.operand(initial)?);
-        if let (None, Some(other)) = (&declared.type_name, operand.other_than_bool()) {
-            let message = format!("without a type `{name}` is a BOOL, and this is not");
-            let problem = Diagnostic::new(Code::TypeMismatch, initial.span, message);
-            self.report.push(problem.hint(format!("write its type, as in `{name} : {other}`")));
-            return None;
-        }
-        let value = self.coerce(operand, ty, initial.span)?.constant();
-        if value.is_none() {
-            let message = format!("the initial value of `{name}` must be a constant");
-            let problem = Diagnostic::new(Code::NotConstant, initial.span, message);
-            self.report.push(problem.hint("write a literal, or name what `const` declares"));
-        }
-        value
-    }
-
     /// Notes a variable's written initial value; `None` if it has a fault that was reported.
-    fn settle(&mut self, id: Option<VariableId>, value: Option<Value>) {
+    fn settle(&mut self, id: Option<VariableId>, value: Option<Initial>) {
         let Some(id) = id else { return };
         let entry = self.scope.entry_mut(id);
         match value {
@@ -228,7 +336,7 @@ impl Checker<'_> {
         for id in self.scope.ids() {
             let Some(first) = self.scope.entry(id).variable.shares else { continue };
             let [root, sharing] = [first, id].map(|id| self.scope.entry(id));
-            let (written, value) = (sharing.explicit_initial, sharing.variable.initial);
+            let (written, value) = (sharing.explicit_initial, sharing.variable.initial.clone());
             if !written {
                 continue;
             } else if !root.explicit_initial {
@@ -242,10 +350,16 @@ impl Checker<'_> {
         }
         for id in self.scope.ids() {
             if let Some(first) = self.scope.entry(id).variable.shares {
-                self.scope.entry_mut(id).variable.initial = self.scope.entry(first).variable.initial;
+                let initial = self.scope.entry(first).variable.initial.clone();
+                self.scope.entry_mut(id).variable.initial = initial;
             }
         }
     }
+}
+
+/// Whether a variable's type is plainly an elementary one, whatever the program declares.
+fn is_elementary(declared: &ladder::Variable) -> bool {
+    declared.ty.as_ref().is_none_or(|ty| ty.dimensions.is_empty() && Elementary::from_name(&ty.name.text).is_some())
 }
 
 fn bits(count: u32) -> String {

@@ -67,6 +67,11 @@ impl Checker<'_> {
             ladder::ExpressionKind::Call { function, arguments } => {
                 self.function(function, arguments, expression.span, None)
             }
+            ladder::ExpressionKind::Array(_) | ladder::ExpressionKind::Structure(_) => {
+                let message = "a list of values stands in declarations only";
+                self.report.push(Diagnostic::new(Code::TypeMismatch, expression.span, message));
+                None
+            }
         }
     }
 
@@ -75,6 +80,14 @@ impl Checker<'_> {
         let (number, ty) = match *literal {
             Literal::Bool(value) => return Some(Operand::Typed(constant(Value::bool(value)))),
             Literal::Time(value) => return Some(Operand::Typed(constant(Value::time(value)))),
+            Literal::Enumerated { ref ty, ref value } => {
+                let found = self.types.value_of(&ty.text, &value.text);
+                if found.is_none() {
+                    let message = format!("there is no value `{}#{}`", ty.text, value.text);
+                    self.report.push(Diagnostic::new(Code::UndeclaredName, span, message));
+                }
+                return found.map(constant).map(Operand::Typed);
+            }
             Literal::Real { value, ty } => (Untyped::Real(if negative { -value } else { value }), ty),
             Literal::Integer { value, ty, .. } => {
                 let Ok(value) = i128::try_from(value) else {

@@ -8,7 +8,7 @@ use super::network::{Power, Walk};
 use super::report::clipped;
 use super::spelling::{self, Budget};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{Branch, ElementKind, Name, Program};
+use crate::ladder::{Branch, ElementKind, Name, Unit};
 use crate::source::Span;
 
 /// What jumps can name.
@@ -25,10 +25,10 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    pub(super) fn of(program: &Program) -> Self {
+    pub(super) fn of(unit: &Unit) -> Self {
         let mut labels = Self::default();
         let mut running = 0;
-        for (index, rung) in program.rungs.iter().enumerate() {
+        for (index, rung) in unit.rungs.iter().enumerate() {
             if let Some(name) = &rung.name {
                 labels.rungs.entry(name.key()).or_insert((index, name.span));
             }
@@ -40,9 +40,9 @@ impl Labels {
     }
 
     /// What can be jumped to that is nearest to a name that no rung has.
-    fn suggest(&mut self, program: &Program, name: &str) -> Option<String> {
+    fn suggest(&mut self, unit: &Unit, name: &str) -> Option<String> {
         let names =
-            program.rungs.iter().filter_map(|rung| rung.name.as_ref()).map(|name| name.text.as_str()).chain(["return"]);
+            unit.rungs.iter().filter_map(|rung| rung.name.as_ref()).map(|name| name.text.as_str()).chain(["return"]);
         spelling::nearest(name, names, &mut self.budget).map(str::to_owned)
     }
 
@@ -70,7 +70,8 @@ impl Checker<'_> {
         let Some((index, defined)) = self.labels.rungs.get(&target.key()).copied() else {
             let problem =
                 Diagnostic::new(Code::UndeclaredName, target.span, format!("no rung is called `{}`", target.text));
-            let hint = self.labels.suggest(self.program, &target.text).map(|near| format!("did you mean `{near}`?"));
+            let drawn = self.drawn();
+            let hint = self.labels.suggest(drawn, &target.text).map(|near| format!("did you mean `{near}`?"));
             self.report.push(Diagnostic { hint, ..problem });
             return None;
         };

@@ -18,7 +18,7 @@ pub struct Checked {
     pub(super) arrays: Vec<ArrayType>,
     pub(super) structures: Vec<Structure>,
     pub(super) variables: Vec<Variable>,
-    pub(super) globals: Range<u32>,
+    pub(super) globals: Vec<VariableId>,
     pub(super) units: Vec<Unit>,
     pub(super) tasks: Vec<Task>,
     pub(super) programs: Vec<ProgramInstance>,
@@ -51,8 +51,8 @@ impl Checked {
     }
 
     /// The global variables: the declared ones in order, then the addresses and registers that their use declares.
-    pub fn globals(&self) -> impl Iterator<Item = VariableId> + use<> {
-        self.globals.clone().map(VariableId)
+    pub fn globals(&self) -> impl Iterator<Item = VariableId> + use<'_> {
+        self.globals.iter().copied()
     }
 
     /// The programs, function blocks and functions.

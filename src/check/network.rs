@@ -4,11 +4,11 @@
 //! so, and where only such power comes together. Behind a block nothing is known, for a block may turn power on. A
 //! rung is said to never conduct when it has coils or assignments, and such power is at every one of them.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use super::expression::constant;
 use super::jump::Labels;
-use super::model::{self, NodeId, Place};
+use super::model::{self, NodeId, Place, UnitId};
 use super::report::clipped;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
@@ -92,13 +92,15 @@ impl Walk {
     }
 }
 
-impl Checker<'_> {
-    /// Checks all rungs but those nested too deeply; the result holds those that run.
-    pub(super) fn check_rungs(&mut self, too_deep: &HashSet<usize>) -> Vec<model::Rung> {
+impl<'p> Checker<'p> {
+    /// Checks all rungs of a unit but those nested too deeply; the result holds those that run.
+    pub(super) fn check_unit(&mut self, unit: usize) -> Vec<model::Rung> {
         let program = self.program;
-        self.labels = Labels::of(program);
-        let mut rungs = Vec::with_capacity(program.rungs.len());
-        for (index, rung) in program.rungs.iter().enumerate() {
+        let drawn = &program.units[unit];
+        self.scope.enter(u32::try_from(unit).ok().map(UnitId));
+        self.labels = Labels::of(drawn);
+        let mut rungs = Vec::with_capacity(drawn.rungs.len());
+        for (index, rung) in drawn.rungs.iter().enumerate() {
             if let Some(name) = &rung.name
                 && let Some(first) = self.labels.earlier(name, index)
             {
@@ -106,12 +108,18 @@ impl Checker<'_> {
                 let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
                 self.report.push(problem.related(first, "the first is here"));
             }
-            if !too_deep.contains(&index) {
+            if !self.too_deep.contains(&(unit, index)) {
                 let checked = self.rung(rung, index);
                 rungs.extend(rung.enabled.then_some(checked));
             }
         }
+        self.check_usage();
         rungs
+    }
+
+    /// The unit that is being checked, as drawn; of global declarations, which have no rungs, the first.
+    pub(super) fn drawn(&self) -> &'p ladder::Unit {
+        &self.program.units[self.scope.unit().map_or(0, UnitId::index)]
     }
 
     fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
@@ -137,7 +145,7 @@ impl Checker<'_> {
 
     /// A rung by its name or else its number, for messages.
     pub(super) fn rung_name(&self, index: usize) -> String {
-        match self.program.rungs.get(index).and_then(|rung| rung.name.as_ref()) {
+        match self.drawn().rungs.get(index).and_then(|rung| rung.name.as_ref()) {
             Some(name) => format!("rung {}", clipped(&name.text)),
             None => format!("rung {}", index + 1),
         }
@@ -208,8 +216,28 @@ impl Checker<'_> {
         node.id
     }
 
-    /// An element and the power on its right.
+    /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        match &element.kind {
+            ElementKind::Block(call) => {
+                walk.active = true;
+                let call = self.call(call, element.span, true, walk);
+                (call.map(model::Element::Call), Power::Maybe)
+            }
+            ElementKind::Parallel(circuit) => {
+                let (circuit, right) = self.circuit(circuit, left, walk);
+                (Some(model::Element::Parallel(circuit)), right)
+            }
+            _ => self.simple_element(element, left, walk),
+        }
+    }
+
+    fn simple_element(
+        &mut self,
+        element: &ladder::Element,
+        left: Power,
+        walk: &mut Walk,
+    ) -> (Option<model::Element>, Power) {
         match &element.kind {
             ElementKind::Contact { kind, operand } => {
                 let operand = self.value(operand, Elementary::Bool);
@@ -232,36 +260,29 @@ impl Checker<'_> {
             ElementKind::Coil { kind, target } => {
                 walk.effect(left);
                 let target = self.coil_target(target);
-                if let Some(target) = target {
+                if let Some(target) = &target {
                     self.note_coil(*kind, target, element.span, walk);
                 }
                 (target.map(|target| model::Element::Coil { kind: *kind, target }), left)
             }
             ElementKind::Assignment { target, value } => {
                 walk.effect(left);
-                let written = self.write(target);
-                let value = match written {
-                    Some((_, ty)) => self.value(value, ty),
-                    // Only for what is wrong in it.
-                    None => self.operand(value).and(None),
-                };
-                let assignment =
-                    written.zip(value).map(|((target, _), value)| model::Element::Assignment { target, value });
+                let assignment = self.assign(target, value).map(|statement| match statement {
+                    model::Statement::Assignment { target, value } => model::Element::Assignment { target, value },
+                    statement => model::Element::Statements(vec![statement]),
+                });
                 (assignment, left)
             }
-            ElementKind::Block(call) => {
-                walk.active = true;
-                let call = self.call(call, element.span, walk);
-                (call.map(model::Element::Call), Power::Maybe)
-            }
-            ElementKind::Parallel(circuit) => {
-                let (circuit, right) = self.circuit(circuit, left, walk);
-                (Some(model::Element::Parallel(circuit)), right)
+            ElementKind::Statements(statements) => {
+                walk.effect(left);
+                let statements = self.statements(statements, walk);
+                (Some(model::Element::Statements(statements)), left)
             }
             ElementKind::Jump { target } => {
                 (self.jump(Some(target), element.span, left, walk), left.and_never(element.span))
             }
             ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
+            ElementKind::Block(_) | ElementKind::Parallel(_) => (None, left),
         }
     }
 

@@ -2,14 +2,14 @@
 
 use super::address::Extent;
 use super::expression::constant as constant_expression;
-use super::model::{Expression, ExpressionKind, PinId, Place, Type, VariableId};
+use super::model::{self, Dimension, Expression, ExpressionKind, Index, PinId, Place, Type, VariableId};
 use super::report::clipped;
 use super::scope::State;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::library::{Pin, StandardBlock};
-use crate::ladder::{Name, Origin, Reference, Root, Step, VariableClass};
+use crate::ladder::library::{Pin, Takes};
+use crate::ladder::{self, Name, Origin, Reference, Root, Step, VariableClass, key};
 use crate::source::Span;
 
 /// Pin names as a list for people.
@@ -41,7 +41,19 @@ impl Checker<'_> {
 
     /// What a reference reads.
     pub(super) fn read(&mut self, reference: &Reference) -> Option<Expression> {
+        if let Some(name) = reference.as_name()
+            && self.scope.find(name).is_none()
+            && let Some(value) = self.types.value(&name.text)
+        {
+            if value.is_err() {
+                let message = format!("several enumerations have a value `{}`", name.text);
+                let problem = Diagnostic::new(Code::TypeMismatch, name.span, message);
+                self.report.push(problem.hint(format!("write the type before it, as in `colour#{}`", name.text)));
+            }
+            return value.ok().map(constant_expression);
+        }
         let (place, ty) = self.place(reference)?;
+        let ty = self.elementary(ty, reference.span)?;
         let entry = self.scope.entry(place.variable);
         if entry.variable.class != VariableClass::Constant {
             return Some(Expression { ty, kind: ExpressionKind::Read(place) });
@@ -54,36 +66,57 @@ impl Checker<'_> {
             self.report.push(problem);
             return None;
         }
-        let value = entry.variable.initial;
-        Some(constant_expression(match place.bit {
-            Some(bit) => Value::bool(value.bits() >> bit & 1 == 1),
-            None => value,
-        }))
+        match (&entry.variable.initial, entry.variable.ty) {
+            (initial, Type::Elementary(whole)) => {
+                let value = initial.value(whole);
+                Some(constant_expression(match place.bit {
+                    Some(bit) => Value::bool(value.bits() >> bit & 1 == 1),
+                    None => value,
+                }))
+            }
+            _ => Some(Expression { ty, kind: ExpressionKind::Read(place) }),
+        }
     }
 
     /// Where a coil, an assignment or an output writes, and the type of what it writes.
     pub(super) fn write(&mut self, reference: &Reference) -> Option<(Place, Elementary)> {
+        let (place, ty) = self.written(reference)?;
+        let ty = self.elementary(ty, reference.span)?;
+        Some((place, ty))
+    }
+
+    /// The same of any type.
+    pub(super) fn written(&mut self, reference: &Reference) -> Option<(Place, Type)> {
         let (place, ty) = self.place(reference)?;
         let variable = &self.scope.entry(place.variable).variable;
         let (name, declared, span) = (clipped(&variable.name), variable.span, reference.span);
-        let problem = match (variable.class, place.pin) {
+        let output_of = place.path.iter().any(|step| match step {
+            model::Step::Pin(PinId::Output(_)) => true,
+            model::Step::Variable(variable) => self.scope.entry(*variable).variable.class == VariableClass::Output,
+            _ => false,
+        });
+        let of_field = variable.address.is_some() || self.is_program();
+        let problem = match (variable.class, output_of) {
             (VariableClass::Constant, _) => Diagnostic::new(Code::NotWritable, span, format!("`{name}` is a constant"))
                 .related(declared, "declared here"),
             (VariableClass::Input, _) => {
-                let problem = match self.program.origin {
-                    Origin::Native => Diagnostic::new(Code::CoilOnInput, span, format!("`{name}` is an input"))
+                let problem = match (self.program.origin, of_field) {
+                    (Origin::Native, true) => Diagnostic::new(Code::CoilOnInput, span, format!("`{name}` is an input"))
                         .hint("an input only follows the field; write a variable of its own"),
-                    Origin::Imported => Diagnostic::new(
+                    (Origin::Native, false) => {
+                        Diagnostic::new(Code::NotWritable, span, format!("`{name}` is an input"))
+                            .hint("the caller writes it; write a variable of its own")
+                    }
+                    (Origin::Imported, true) => Diagnostic::new(
                         Code::OverwrittenInput,
                         span,
                         format!("`{name}` is an input, and the next copy-in overwrites what is written here"),
                     ),
+                    (Origin::Imported, false) => return Some((place, ty)),
                 };
                 problem.related(declared, "declared here")
             }
-            (_, Some(PinId::Output(_))) => {
-                Diagnostic::new(Code::NotWritable, span, format!("only `{name}` itself writes its outputs"))
-            }
+            (_, true) => Diagnostic::new(Code::NotWritable, span, format!("only `{name}` itself writes its outputs")),
             _ => return Some((place, ty)),
         };
         let stands = !problem.is_error();
@@ -91,37 +124,74 @@ impl Checker<'_> {
         stands.then_some((place, ty))
     }
 
-    fn place(&mut self, reference: &Reference) -> Option<(Place, Elementary)> {
+    /// A type that must be elementary.
+    fn elementary(&mut self, ty: Type, span: Span) -> Option<Elementary> {
+        let message = match ty {
+            Type::Elementary(ty) => return Some(ty),
+            Type::Block(_) | Type::Unit(_) => "this is a block instance, not a value".to_owned(),
+            Type::Array(_) | Type::Structure(_) => {
+                format!("this is {}, not a single value", types::with_article(&self.type_name(ty)))
+            }
+        };
+        let problem = Diagnostic::new(Code::TypeMismatch, span, message);
+        self.report.push(match ty {
+            Type::Block(block) => {
+                let first = block.outputs().first().map_or("", |pin| pin.name);
+                problem.hint(format!("name one of its pins, as in `instance.{first}`"))
+            }
+            Type::Array(_) => problem.hint("name one of its elements, as in `a[1]`"),
+            _ => problem.hint("name one of its members, as in `a.b`"),
+        });
+        None
+    }
+
+    /// The storage that a reference names.
+    pub(super) fn place(&mut self, reference: &Reference) -> Option<(Place, Type)> {
         let variable = match &reference.root {
             Root::Name(name) => self.lookup(name, || None)?,
             // Without an extent it was reported when the addresses were collected.
             Root::Address(address) => {
-                let id = *self.scope.addresses.get(&Extent::of(address)?)?;
+                let Some(id) = self.scope.addresses.get(&Extent::of(address)?).copied() else {
+                    // Only what rungs use is declared by use.
+                    let message = "what stands at an address is not known before the program runs";
+                    self.report.push(Diagnostic::new(Code::NotConstant, address.span, message));
+                    return None;
+                };
                 let entry = self.scope.entry_mut(id);
                 entry.mentioned = true;
                 (entry.state != State::Broken).then_some(id)?
             }
         };
-        let mut place = Place { variable, pin: None, bit: None };
-        let mut steps = reference.steps.iter();
-        let mut ty = match self.scope.entry(variable).variable.ty {
-            Type::Elementary(ty) => ty,
-            Type::Block(block) => {
-                let (pin, ty) = self.member(variable, block, steps.next(), reference.span)?;
-                place.pin = Some(pin);
-                ty
-            }
-        };
-        for step in steps {
-            match step {
-                Step::Bit(bit, span) => {
-                    self.check_bit(ty, *bit, *span)?;
-                    (place.bit, ty) = (Some(*bit), Elementary::Bool);
+        let mut place = Place::of(variable);
+        let mut ty = self.scope.entry(variable).variable.ty;
+        let mut steps = reference.steps.iter().peekable();
+        while let Some(step) = steps.next() {
+            match (step, ty) {
+                (Step::Bit(bit, span), Type::Elementary(of)) if place.bit.is_none() => {
+                    self.check_bit(of, *bit, *span)?;
+                    (place.bit, ty) = (Some(*bit), Type::Elementary(Elementary::Bool));
                 }
-                Step::Member(name) => {
-                    let message =
-                        format!("{} has no members, and so no `{}`", types::with_article(ty.name()), name.text);
-                    self.report.push(Diagnostic::new(Code::UnknownMember, name.span, message));
+                (Step::Index(indices, span), Type::Array(array)) => {
+                    let dimensions = self.types.arrays[array.index()].dimensions.clone();
+                    let mut all: Vec<&ladder::Expression> = indices.iter().collect();
+                    // `a[1][2]` is `a[1, 2]` where both are dimensions of one array.
+                    while all.len() < dimensions.len()
+                        && let Some(Step::Index(more, _)) = steps.next_if(|step| matches!(step, Step::Index(..)))
+                    {
+                        all.extend(more);
+                    }
+                    place.path.push(model::Step::Element(self.indices(&all, &dimensions, *span)?));
+                    ty = self.types.arrays[array.index()].element;
+                }
+                (Step::Member(name), ty_of) => {
+                    let (step, member) = self.member(ty_of, name)?;
+                    place.path.push(step);
+                    ty = member;
+                }
+                (Step::Bit(_, span) | Step::Index(_, span), _) => {
+                    let what = if matches!(step, Step::Bit(..)) { "bits" } else { "elements" };
+                    let message = format!("{} has no {what}", types::with_article(&self.type_name(ty)));
+                    self.report.push(Diagnostic::new(Code::UnknownMember, *span, message));
                     return None;
                 }
             }
@@ -129,41 +199,76 @@ impl Checker<'_> {
         Some((place, ty))
     }
 
-    /// The pin that the step behind a block instance names.
-    fn member(
-        &mut self,
-        instance: VariableId,
-        block: StandardBlock,
-        step: Option<&Step>,
-        span: Span,
-    ) -> Option<(PinId, Elementary)> {
-        let name = &self.scope.entry(instance).variable.name;
-        let (inputs, outputs) = (block.inputs(), block.outputs());
-        let problem = match step {
-            Some(Step::Member(member)) => {
-                if let Some(pin) = block.output(&member.text) {
-                    return Some((PinId::Output(pin), outputs[pin].ty));
-                } else if let Some(pin) = block.input(&member.text) {
-                    return Some((PinId::Input(pin), inputs[pin].ty));
+    /// Indices, one for each dimension.
+    fn indices(&mut self, indices: &[&ladder::Expression], dimensions: &[Dimension], span: Span) -> Option<Vec<Index>> {
+        if indices.len() != dimensions.len() {
+            let message =
+                format!("the array has {} dimensions, and here are {} indices", dimensions.len(), indices.len());
+            self.report.push(Diagnostic::new(Code::WrongArguments, span, message));
+            return None;
+        }
+        let mut found = Vec::with_capacity(indices.len());
+        for (index, dimension) in indices.iter().zip(dimensions) {
+            found.push(self.index(index, *dimension));
+        }
+        found.into_iter().collect()
+    }
+
+    fn index(&mut self, index: &ladder::Expression, dimension: Dimension) -> Option<Index> {
+        let checked = self.value(index, Elementary::Lint)?;
+        let Some(value) = checked.constant() else { return Some(Index::Computed(Box::new(checked))) };
+        let value = value.as_integer()?;
+        let place = u32::try_from(value - i128::from(dimension.first)).ok().filter(|place| *place < dimension.count);
+        if place.is_none() {
+            let last = i128::from(dimension.first) + i128::from(dimension.count) - 1;
+            let problem = Diagnostic::new(Code::OutOfRange, index.span, format!("the array has no element {value}"));
+            self.report.push(problem.hint(format!("its elements are {} to {last}", dimension.first)));
+        }
+        place.map(Index::Constant)
+    }
+
+    /// The member of that name.
+    fn member(&mut self, ty: Type, name: &Name) -> Option<(model::Step, Type)> {
+        let (message, hint) = match ty {
+            Type::Block(block) => {
+                let (inputs, outputs) = (block.inputs(), block.outputs());
+                if let Some(pin) = block.output(&name.text) {
+                    return Some((model::Step::Pin(PinId::Output(pin)), Type::Elementary(outputs[pin].ty)));
                 }
-                let message = format!("`{name}` is {} and has no `{}`", types::with_article(block.name()), member.text);
-                Diagnostic::new(Code::UnknownMember, member.span, message).hint(format!(
-                    "its outputs are {}, its inputs {}",
-                    list(outputs),
-                    list(inputs)
-                ))
+                if let Some(pin) = block.input(&name.text).filter(|pin| inputs[*pin].takes == Takes::Value) {
+                    return Some((model::Step::Pin(PinId::Input(pin)), Type::Elementary(inputs[pin].ty)));
+                }
+                let message = format!("{} has no `{}`", types::with_article(block.name()), name.text);
+                (message, Some(format!("its outputs are {}, its inputs {}", list(outputs), list(inputs))))
             }
-            Some(Step::Bit(_, span)) => {
-                Diagnostic::new(Code::UnknownMember, *span, format!("`{name}` is a block instance and has no bits"))
+            Type::Unit(unit) => {
+                let found = self.scope.find_in(unit, &name.text).map(|id| (id, &self.scope.entry(id).variable));
+                if let Some((id, variable)) = found
+                    && matches!(variable.class, VariableClass::Input | VariableClass::Output)
+                {
+                    return Some((model::Step::Variable(id), variable.ty));
+                }
+                let message =
+                    format!("{} has no input or output `{}`", types::with_article(&self.type_name(ty)), name.text);
+                (message, None)
             }
-            None => {
-                let message = format!("`{name}` is a block instance, not a value");
-                let first = outputs.first().map_or("", |pin| pin.name);
-                Diagnostic::new(Code::TypeMismatch, span, message)
-                    .hint(format!("name one of its pins, as `{name}.{first}`"))
+            Type::Structure(structure) => {
+                let fields = &self.types.structures[structure.index()].fields;
+                let wanted = name.key();
+                if let Some(place) = fields.iter().position(|field| key(&field.name) == wanted) {
+                    return Some((model::Step::Field(place), fields[place].ty));
+                }
+                let names: Vec<String> = fields.iter().take(8).map(|field| format!("`{}`", field.name)).collect();
+                let message = format!("{} has no member `{}`", types::with_article(&self.type_name(ty)), name.text);
+                (message, Some(format!("its members are {}", names.join(", "))))
             }
+            Type::Elementary(_) | Type::Array(_) => (
+                format!("{} has no members, and so no `{}`", types::with_article(&self.type_name(ty)), name.text),
+                None,
+            ),
         };
-        self.report.push(problem);
+        let problem = Diagnostic::new(Code::UnknownMember, name.span, message);
+        self.report.push(Diagnostic { hint, ..problem });
         None
     }
 

@@ -59,6 +59,11 @@ impl Report {
         }
     }
 
+    /// Whether there was an error.
+    pub(super) fn has_errors(&self) -> bool {
+        self.errors.count > 0
+    }
+
     /// Whether the program runs, and what there is to say, in order of place.
     pub(super) fn finish(mut self) -> (bool, Vec<Diagnostic>) {
         self.kept.extend(self.errors.overflow(Code::TooManyDiagnostics, "errors"));

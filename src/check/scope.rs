@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use super::address::Extent;
-use super::model::{Variable, VariableId};
+use super::model::{UnitId, Variable, VariableId};
 use super::spelling::{self, Budget};
 use crate::ladder::{Name, key};
 
@@ -13,6 +13,8 @@ use crate::ladder::{Name, key};
 pub(super) struct Entry {
     pub(super) variable: Variable,
     pub(super) state: State,
+    /// The unit that it belongs to; none for a global one.
+    pub(super) unit: Option<UnitId>,
     /// Whether its initial value was written down.
     pub(super) explicit_initial: bool,
     /// Whether anything names it.
@@ -40,7 +42,11 @@ fn folded(name: &str) -> Cow<'_, str> {
 #[derive(Default)]
 pub(super) struct Scope {
     entries: Vec<Entry>,
-    names: HashMap<String, VariableId>,
+    globals: HashMap<String, VariableId>,
+    /// The names of each unit.
+    units: Vec<HashMap<String, VariableId>>,
+    /// The unit whose names count now.
+    unit: Option<UnitId>,
     /// The first variable at each address, whose storage later ones share.
     pub(super) addresses: HashMap<Extent, VariableId>,
     /// The undeclared names that were reported; each is once.
@@ -49,26 +55,58 @@ pub(super) struct Scope {
 }
 
 impl Scope {
-    /// The variable of that name.
+    /// From here on names are those of a unit, before the global ones; without a unit the global ones only.
+    pub(super) fn enter(&mut self, unit: Option<UnitId>) {
+        self.unit = unit;
+        if let Some(unit) = unit
+            && self.units.len() <= unit.index()
+        {
+            self.units.resize_with(unit.index() + 1, HashMap::new);
+        }
+    }
+
+    /// The unit whose names count now.
+    pub(super) fn unit(&self) -> Option<UnitId> {
+        self.unit
+    }
+
+    /// The variable of that name: of the unit, else the global one.
     pub(super) fn find(&self, name: &Name) -> Option<VariableId> {
-        self.names.get(folded(&name.text).as_ref()).copied()
+        let key = folded(&name.text);
+        let own = self.unit.and_then(|unit| self.units[unit.index()].get(key.as_ref()));
+        own.or_else(|| self.globals.get(key.as_ref())).copied()
+    }
+
+    /// A global variable, by its name.
+    pub(super) fn find_global(&self, name: &str) -> Option<VariableId> {
+        self.globals.get(folded(name).as_ref()).copied()
+    }
+
+    /// A variable of a unit, by its name.
+    pub(super) fn find_in(&self, unit: UnitId, name: &str) -> Option<VariableId> {
+        self.units.get(unit.index())?.get(folded(name).as_ref()).copied()
     }
 
     /// Adds a variable under its name. Where there is one of that name already, `Err` is that one.
     pub(super) fn add(&mut self, variable: Variable, state: State) -> Result<VariableId, VariableId> {
         let next = self.next_id();
-        let first = *self.names.entry(key(&variable.name)).or_insert(next);
+        let names = match self.unit {
+            Some(unit) => &mut self.units[unit.index()],
+            None => &mut self.globals,
+        };
+        let first = *names.entry(key(&variable.name)).or_insert(next);
         if first == next { Ok(self.add_nameless(variable, state)) } else { Err(first) }
     }
 
     /// Adds a variable that is found by its address only.
     pub(super) fn add_nameless(&mut self, variable: Variable, state: State) -> VariableId {
         let id = self.next_id();
-        self.entries.push(Entry { variable, state, explicit_initial: false, mentioned: false });
+        let unit = self.unit;
+        self.entries.push(Entry { variable, state, unit, explicit_initial: false, mentioned: false });
         id
     }
 
-    fn next_id(&self) -> VariableId {
+    pub(super) fn next_id(&self) -> VariableId {
         // A declaration takes more than a byte of a source, so that 32 bits are enough.
         VariableId(u32::try_from(self.entries.len()).unwrap_or(u32::MAX))
     }
@@ -97,7 +135,9 @@ impl Scope {
 
     /// The declared name nearest to one that is not declared.
     pub(super) fn suggest(&mut self, name: &str) -> Option<&str> {
-        let candidates = self.entries.iter().map(|entry| entry.variable.name.as_str());
+        let unit = self.unit;
+        let visible = self.entries.iter().filter(|entry| entry.unit.is_none() || entry.unit == unit);
+        let candidates = visible.map(|entry| entry.variable.name.as_str());
         spelling::nearest(name, candidates, &mut self.budget)
     }
 
@@ -106,7 +146,9 @@ impl Scope {
         spelling::nearest(name, names, &mut self.budget)
     }
 
-    pub(super) fn into_variables(self) -> Vec<Variable> {
-        self.entries.into_iter().map(|entry| entry.variable).collect()
+    /// All variables, and which of them are global.
+    pub(super) fn into_variables(self) -> (Vec<Variable>, Vec<VariableId>) {
+        let globals = self.ids().filter(|id| self.entry(*id).unit.is_none()).collect();
+        (self.entries.into_iter().map(|entry| entry.variable).collect(), globals)
     }
 }

@@ -1,18 +1,7 @@
 //! Which types go with which: widening without loss, the types of operators, and advice where they do not fit.
 
-use super::model::Type;
 use crate::elementary::Elementary::{self, Dint, Int, Lreal, Real, Sint, Udint, Uint, Usint};
 use crate::ladder::{BinaryOperator, UnaryOperator};
-
-impl Type {
-    /// Its name, as the standard spells it.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Elementary(ty) => ty.name(),
-            Self::Block(block) => block.name(),
-        }
-    }
-}
 
 /// Whether every value of a type is also one of another, wider type, so that the conversion need not be written.
 pub(super) fn widens(from: Elementary, to: Elementary) -> bool {

@@ -3,7 +3,7 @@
 //! that of too many findings the same ones are kept in every run.
 
 use super::Checker;
-use super::model::{Place, VariableId};
+use super::model::{Index, Place, Step, VariableId};
 use super::network::Walk;
 use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
@@ -17,12 +17,17 @@ const MOST_RELATED: usize = 8;
 #[derive(Default)]
 pub(super) struct Usage {
     /// The coils, each with its place by the variable that has the storage.
-    coils: Vec<(Place, Coil)>,
+    coils: Vec<(Key, Coil)>,
     /// The calls.
-    calls: Vec<(VariableId, Call)>,
+    calls: Vec<(Key, Call)>,
 }
 
+/// What tells two places apart: the variable that has the storage, the way from there, and the bit. Places with a computed index
+/// have none.
+type Key = (VariableId, String, Option<u8>);
+
 struct Call {
+    instance: VariableId,
     span: Span,
     rung: usize,
 }
@@ -36,40 +41,52 @@ struct Coil {
 }
 
 impl Checker<'_> {
-    pub(super) fn note_coil(&mut self, kind: CoilKind, target: Place, span: Span, walk: &Walk) {
-        if walk.enabled {
+    pub(super) fn note_coil(&mut self, kind: CoilKind, target: &Place, span: Span, walk: &Walk) {
+        if walk.enabled
+            && let Some(key) = self.key(target)
+        {
             let latches = matches!(kind, CoilKind::Set | CoilKind::Reset);
             let coil = Coil { variable: target.variable, span, rung: walk.rung, latches };
-            let place = Place { variable: self.scope.storage(target.variable), ..target };
-            self.usage.coils.push((place, coil));
+            self.usage.coils.push((key, coil));
         }
     }
 
-    pub(super) fn note_call(&mut self, instance: VariableId, span: Span, walk: &Walk) {
-        if walk.enabled {
-            self.usage.calls.push((instance, Call { span, rung: walk.rung }));
+    pub(super) fn note_call(&mut self, instance: &Place, span: Span, walk: &Walk) {
+        if walk.enabled
+            && let Some(key) = self.key(instance)
+        {
+            self.usage.calls.push((key, Call { instance: instance.variable, span, rung: walk.rung }));
         }
     }
 
-    /// Reports what the whole program shows; unused names only if all of it could be seen.
-    pub(super) fn check_usage(&mut self, complete: bool) {
+    fn key(&self, place: &Place) -> Option<Key> {
+        let computed = |step: &Step| match step {
+            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
+            _ => false,
+        };
+        if place.path.iter().any(computed) {
+            return None;
+        }
+        let path = if place.path.is_empty() { String::new() } else { format!("{:?}", place.path) };
+        Some((self.scope.storage(place.variable), path, place.bit))
+    }
+
+    /// Reports what the rungs of the unit that was just checked show together.
+    pub(super) fn check_usage(&mut self) {
         let Usage { mut coils, mut calls } = std::mem::take(&mut self.usage);
         // Both sorts keep the order of the rungs among equals.
-        coils.sort_by_key(|(place, _)| (place.variable, place.pin, place.bit));
+        coils.sort_by(|(a, _), (b, _)| a.cmp(b));
         for group in coils.chunk_by(|(a, _), (b, _)| a == b) {
             self.check_coils(group);
         }
-        calls.sort_by_key(|(instance, _)| *instance);
+        calls.sort_by(|(a, _), (b, _)| a.cmp(b));
         for group in calls.chunk_by(|(a, _), (b, _)| a == b) {
             self.check_calls(group);
-        }
-        if complete {
-            self.check_unused();
         }
     }
 
     /// The coils of one place.
-    fn check_coils(&mut self, coils: &[(Place, Coil)]) {
+    fn check_coils(&mut self, coils: &[(Key, Coil)]) {
         let [earlier @ .., (_, last)] = coils else { return };
         let Some((_, first)) = earlier.first() else { return };
         if coils.iter().all(|(_, coil)| coil.latches) {
@@ -87,9 +104,9 @@ impl Checker<'_> {
     }
 
     /// The calls of one instance.
-    fn check_calls(&mut self, calls: &[(VariableId, Call)]) {
-        let [(id, first), .., (_, last)] = calls else { return };
-        let name = &self.scope.entry(*id).variable.name;
+    fn check_calls(&mut self, calls: &[(Key, Call)]) {
+        let [(_, first), .., (_, last)] = calls else { return };
+        let name = &self.scope.entry(first.instance).variable.name;
         let message = format!("`{name}` is called in {}", self.both(first.rung, last.rung));
         let problem = Diagnostic::new(Code::RepeatedBlock, last.span, message)
             .related(first.span, "called first here")
@@ -105,7 +122,11 @@ impl Checker<'_> {
         }
     }
 
-    fn check_unused(&mut self) {
+    /// Reports names that nothing uses, if all rungs could be seen.
+    pub(super) fn check_unused(&mut self) {
+        if !self.too_deep.is_empty() {
+            return;
+        }
         for id in self.scope.ids() {
             let entry = self.scope.entry(id);
             let variable = &entry.variable;
@@ -115,7 +136,7 @@ impl Checker<'_> {
             let what = match variable.class {
                 VariableClass::Input => "reads the input",
                 VariableClass::Output => "writes the output",
-                VariableClass::Memory => "uses",
+                VariableClass::Memory | VariableClass::InOut | VariableClass::Temporary => "uses",
                 VariableClass::Constant => "uses the constant",
             };
             let problem =

@@ -166,7 +166,7 @@ fn description(
     compiled_in: u64,
 ) -> String {
     let counts = elements::count(checked);
-    let rungs = checked.rungs().len();
+    let rungs: usize = checked.units().iter().map(|unit| unit.rungs.len()).sum();
     let code = engine
         .code_bytes()
         .map_or_else(String::new, |bytes| format!(", {bytes} bytes of code ({} a rung)", bytes.div_ceil(rungs.max(1))));

@@ -167,7 +167,10 @@ impl Builder<'_> {
                 labels.push(match written {
                     Some(text) => text,
                     None if self.depth >= MAXIMUM_DEPTH => "…".to_owned(),
-                    None => self.pin_circuit(circuit, &format!("{}.{}", label::reference(&call.instance, self.limits.pin), argument.pin.text)),
+                    None => self.pin_circuit(
+                        circuit,
+                        &format!("{}.{}", label::reference(&call.instance, self.limits.pin), argument.pin.text),
+                    ),
                 });
             }
         }

@@ -161,8 +161,11 @@ impl Symbol {
         circuit_labels: Vec<String>,
         limits: Limits,
     ) -> Self {
-        let type_name =
-            call.type_name.as_ref().map(|name| name.text.as_str()).or_else(|| call.instance.as_name().and_then(|name| types.type_of(&name.text)));
+        let type_name = call
+            .type_name
+            .as_ref()
+            .map(|name| name.text.as_str())
+            .or_else(|| call.instance.as_name().and_then(|name| types.type_of(&name.text)));
         let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
         let instance = label::reference(&call.instance, limits.block);
         let type_name = label::cut_name(type_name.unwrap_or("?"), limits.block);

@@ -11,7 +11,7 @@ mod timers;
 
 use super::Lowering;
 use super::slots::InstanceSlots;
-use crate::check::{Call, Wire};
+use crate::check::{Call, Callee, Output, Wire};
 use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock;
 use crate::logic::{Builder, SlotId, ValueId};
@@ -114,7 +114,8 @@ impl Run<'_> {
 impl Lowering<'_> {
     /// A call; gives the power on its right.
     pub(super) fn call(&mut self, call: &Call, left: ValueId, nodes: &mut Vec<Option<ValueId>>) -> ValueId {
-        let slots = self.slots.instance(call.instance);
+        let Callee::Standard(block, instance) = &call.callee else { return left };
+        let slots = self.slots.instance(instance.variable);
         let mut wired = vec![None; slots.inputs.len()];
         let mut wire = |lowering: &mut Self, pin: usize, value: ValueId| {
             wired[pin] = Some(value);
@@ -143,18 +144,22 @@ impl Lowering<'_> {
         let inputs = inputs.collect();
         let enable = if call.power_input.is_none() { Some(left) } else { None };
         let runs = self.unless_jumped(enable);
-        (rule(call.block).run)(&mut Run { logic: &mut self.logic, slots, inputs, runs });
+        (rule(*block).run)(&mut Run { logic: &mut self.logic, slots, inputs, runs });
         for (pin, target) in &call.outputs {
-            let value = self.logic.load(slots.outputs[*pin]);
+            let value = self.logic.load(slots.outputs[output(*pin)]);
             match enable {
-                None => self.write(*target, value),
-                Some(enable) => self.write_if(enable, *target, value),
+                None => self.write(target, value),
+                Some(enable) => self.write_if(enable, target, value),
             }
         }
         match call.power_output {
-            Some(pin) => self.logic.load(slots.outputs[pin]),
+            Output::Pin(pin) => self.logic.load(slots.outputs[pin]),
             // ENO, which is TRUE for a block that always runs.
-            None => enable.unwrap_or_else(|| self.logic.bool(true)),
+            Output::Eno => enable.unwrap_or_else(|| self.logic.bool(true)),
         }
     }
+}
+
+fn output(output: Output) -> usize {
+    if let Output::Pin(pin) = output { pin } else { 0 }
 }

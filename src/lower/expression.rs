@@ -11,7 +11,8 @@ impl Lowering<'_> {
     pub(super) fn expression(&mut self, expression: &Expression) -> ValueId {
         match &expression.kind {
             ExpressionKind::Constant(value) => self.logic.constant(*value),
-            ExpressionKind::Read(place) => self.read(*place),
+            ExpressionKind::Read(place) => self.read(place),
+            ExpressionKind::UserCall { .. } => self.logic.constant(Value::default_of(expression.ty)),
             ExpressionKind::Unary(operator, operand) => {
                 let operand = self.expression(operand);
                 self.logic.unary(unary(*operator), operand)
@@ -32,7 +33,7 @@ impl Lowering<'_> {
     }
 
     /// What a place holds.
-    pub(super) fn read(&mut self, place: Place) -> ValueId {
+    pub(super) fn read(&mut self, place: &Place) -> ValueId {
         let whole = self.logic.load(self.slots.of(place));
         match place.bit {
             None => whole,
@@ -46,7 +47,7 @@ impl Lowering<'_> {
     }
 
     /// Sets a place.
-    pub(super) fn write(&mut self, place: Place, value: ValueId) {
+    pub(super) fn write(&mut self, place: &Place, value: ValueId) {
         let slot = self.slots.of(place);
         let value = match place.bit {
             None => value,
@@ -63,7 +64,7 @@ impl Lowering<'_> {
     }
 
     /// Sets a place while a condition holds.
-    pub(super) fn write_if(&mut self, condition: ValueId, place: Place, value: ValueId) {
+    pub(super) fn write_if(&mut self, condition: ValueId, place: &Place, value: ValueId) {
         let old = self.read(place);
         let value = self.logic.select(condition, value, old);
         self.write(place, value);

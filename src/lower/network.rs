@@ -50,7 +50,7 @@ impl Lowering<'_> {
         match element {
             Element::Contact { kind, operand } => self.contact(*kind, operand, left),
             Element::Coil { kind, target } => {
-                self.coil(*kind, *target, left);
+                self.coil(*kind, target, left);
                 left
             }
             Element::Call(call) => self.call(call, left, nodes),
@@ -60,12 +60,13 @@ impl Lowering<'_> {
             }
             Element::Assignment { target, value } => {
                 let value = self.expression(value);
-                self.write_if(left, *target, value);
+                self.write_if(left, target, value);
                 left
             }
             Element::Parallel(circuit) => self.circuit(circuit, left, nodes),
             Element::Jump(target) => self.jump(*target, left),
             Element::Return => self.jump(self.end, left),
+            Element::Statements(_) => left,
         }
     }
 
@@ -80,7 +81,7 @@ impl Lowering<'_> {
         self.logic.and(left, conducts)
     }
 
-    fn coil(&mut self, kind: CoilKind, target: Place, power: ValueId) {
+    fn coil(&mut self, kind: CoilKind, target: &Place, power: ValueId) {
         let value = match kind {
             CoilKind::Plain => power,
             CoilKind::Negated => self.logic.not(power),

@@ -8,7 +8,8 @@ use std::collections::HashSet;
 
 use super::blocks;
 use crate::check::{
-    Call, Checked, Circuit, Element, Expression, ExpressionKind, PinId, Place, Type, Variable, VariableId, Wire,
+    Call, Callee, Checked, Circuit, Element, Expression, ExpressionKind, PinId, Place, Step, Type, Variable,
+    VariableId, Wire,
 };
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
@@ -61,8 +62,8 @@ impl Slots {
     }
 
     /// The slot of a place, without regard to its bit.
-    pub(super) fn of(&self, place: Place) -> SlotId {
-        let slot = match (&self.variables[place.variable.index()], place.pin) {
+    pub(super) fn of(&self, place: &Place) -> SlotId {
+        let slot = match (&self.variables[place.variable.index()], pin_of(place)) {
             (VariableSlots::Value(slot), _) => Some(*slot),
             (VariableSlots::Instance(slots), Some(PinId::Input(pin))) => slots.inputs[pin],
             (VariableSlots::Instance(slots), Some(PinId::Output(pin))) => Some(slots.outputs[pin]),
@@ -72,6 +73,10 @@ impl Slots {
             unreachable!("the checker makes places of values and pins, and all pins in use have slots")
         })
     }
+}
+
+fn pin_of(place: &Place) -> Option<PinId> {
+    place.path.iter().find_map(|step| if let Step::Pin(pin) = step { Some(*pin) } else { None })
 }
 
 /// Gives every slot its name and place.
@@ -93,6 +98,7 @@ pub(super) fn allocate(
             (Type::Block(block), _) => {
                 VariableSlots::Instance(allocator.instance(variable, block, kept_inputs, line(variable.span)))
             }
+            _ => continue,
         };
         match (&slots, variable.ty) {
             (VariableSlots::Instance(slots), Type::Block(block)) => {
@@ -101,12 +107,12 @@ pub(super) fn allocate(
                 }
             }
             (VariableSlots::Value(slot), _) => allocator.layout.observe(&variable.name, *slot),
-            (VariableSlots::Instance(_), Type::Elementary(_)) => {}
+            (VariableSlots::Instance(_), _) => {}
         }
         variables.push(slots);
     }
     let mut edges = Vec::new();
-    for (rung, count) in checked.rungs().iter().zip(&used.edges) {
+    for (rung, count) in checked.units()[0].rungs.iter().zip(&used.edges) {
         for number in 1..=*count {
             edges.push(allocator.state(format!("{}#{number}", rung.label), Elementary::Bool, false, line(rung.span)));
         }
@@ -130,10 +136,10 @@ impl Allocator {
             },
             (None, VariableClass::Input) => Area::Input,
             (None, VariableClass::Output) => Area::Output,
-            (None, VariableClass::Memory | VariableClass::Constant) => Area::Memory,
+            (None, _) => Area::Memory,
         };
         let name = self.unique(variable.name.clone());
-        let (retain, initial) = (variable.retain, variable.initial);
+        let (retain, initial) = (variable.retain, variable.initial.value(ty));
         self.layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line })
     }
 
@@ -186,7 +192,7 @@ impl Used {
     fn find(checked: &Checked) -> Self {
         let pins = |variable: &Variable| match variable.ty {
             Type::Block(block) => vec![false; block.inputs().len()],
-            Type::Elementary(_) => Vec::new(),
+            _ => Vec::new(),
         };
         let mut used = Self {
             kept_inputs: checked.variables().iter().map(pins).collect(),
@@ -194,7 +200,7 @@ impl Used {
             edges: Vec::new(),
             jump: None,
         };
-        for rung in checked.rungs() {
+        for rung in &checked.units()[0].rungs {
             used.edges.push(0);
             if used.circuit(&rung.circuit) {
                 used.jump.get_or_insert(rung.span);
@@ -214,16 +220,17 @@ impl Used {
                 }
                 Element::Coil { kind, target } => {
                     self.edge(matches!(kind, CoilKind::Rising | CoilKind::Falling));
-                    self.place(*target);
+                    self.place(target);
                 }
                 Element::Call(call) => self.call(call),
                 Element::Condition(condition) => self.expression(condition),
                 Element::Assignment { target, value } => {
-                    self.place(*target);
+                    self.place(target);
                     self.expression(value);
                 }
                 Element::Parallel(circuit) => jumps |= self.circuit(circuit),
                 Element::Jump(_) | Element::Return => jumps = true,
+                Element::Statements(_) => {}
             }
         }
         jumps
@@ -237,8 +244,9 @@ impl Used {
 
     fn call(&mut self, call: &Call) {
         // A call may stand in a circuit at another call's pin, of the same instance even.
-        let called_before = std::mem::replace(&mut self.called[call.instance.index()], true);
-        for (pin, kept) in self.kept_inputs[call.instance.index()].iter_mut().enumerate() {
+        let Callee::Standard(_, instance) = &call.callee else { return };
+        let called_before = std::mem::replace(&mut self.called[instance.variable.index()], true);
+        for (pin, kept) in self.kept_inputs[instance.variable.index()].iter_mut().enumerate() {
             let wired = call.power_input == Some(pin) || call.inputs.iter().any(|input| input.pin == pin);
             *kept |= called_before || !wired;
         }
@@ -249,14 +257,15 @@ impl Used {
             }
         }
         for (_, target) in &call.outputs {
-            self.place(*target);
+            self.place(target);
         }
     }
 
     fn expression(&mut self, expression: &Expression) {
         match &expression.kind {
             ExpressionKind::Constant(_) => {}
-            ExpressionKind::Read(place) => self.place(*place),
+            ExpressionKind::Read(place) => self.place(place),
+            ExpressionKind::UserCall { .. } => {}
             ExpressionKind::Unary(_, operand) | ExpressionKind::Widen(operand) => self.expression(operand),
             ExpressionKind::Binary(_, left, right) => {
                 self.expression(left);
@@ -266,8 +275,8 @@ impl Used {
         }
     }
 
-    fn place(&mut self, place: Place) {
-        if let Some(PinId::Input(pin)) = place.pin {
+    fn place(&mut self, place: &Place) {
+        if let Some(PinId::Input(pin)) = pin_of(place) {
             self.kept_inputs[place.variable.index()][pin] = true;
         }
     }

@@ -18,7 +18,7 @@ pub(super) fn count(checked: &Checked) -> Counts {
     visit(checked, |element| match element {
         Element::Contact { .. } => counts.contacts += 1,
         Element::Coil { .. } => counts.coils += 1,
-        Element::Condition(_) | Element::Assignment { .. } => counts.boxes += 1,
+        Element::Condition(_) | Element::Assignment { .. } | Element::Statements(_) => counts.boxes += 1,
         Element::Call(_) => counts.blocks += 1,
         Element::Parallel(_) | Element::Jump(_) | Element::Return => {}
     });
@@ -27,7 +27,8 @@ pub(super) fn count(checked: &Checked) -> Counts {
 
 /// Shows each element, in no particular order. With a list instead of recursion, however deep circuits nest.
 pub(super) fn visit<'p>(checked: &'p Checked, mut see: impl FnMut(&'p Element)) {
-    let mut circuits: Vec<&Circuit> = checked.rungs().iter().map(|rung| &rung.circuit).collect();
+    let mut circuits: Vec<&Circuit> =
+        checked.units().iter().flat_map(|unit| &unit.rungs).map(|rung| &rung.circuit).collect();
     while let Some(circuit) = circuits.pop() {
         for element in circuit.branches.iter().flat_map(|branch| &branch.elements) {
             see(element);
@@ -41,6 +42,7 @@ pub(super) fn visit<'p>(checked: &'p Checked, mut see: impl FnMut(&'p Element)) 
                 | Element::Coil { .. }
                 | Element::Condition(_)
                 | Element::Assignment { .. }
+                | Element::Statements(_)
                 | Element::Jump(_)
                 | Element::Return => {}
             }

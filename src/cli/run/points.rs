@@ -1,7 +1,7 @@
 //! What a person sees and sets while a program runs: its inputs, outputs, variables and blocks by name.
 
 use super::{duration, elements, time};
-use crate::check::{Checked, Element, ExpressionKind, Input, Place, Type, Wire};
+use crate::check::{Callee, Checked, Element, ExpressionKind, Input, Place, Type, Wire};
 use crate::elementary::{Elementary, Value, f32_of};
 use crate::ladder::library::StandardBlock;
 use crate::logic::Layout;
@@ -102,14 +102,15 @@ fn presets(checked: &Checked, layout: &Layout) -> Vec<Option<Preset>> {
     let mut presets = vec![None; checked.variables().len()];
     elements::visit(checked, |element| {
         let Element::Call(call) = element else { return };
+        let Callee::Standard(block, instance) = &call.callee else { return };
         let preset = [("ET", "PT"), ("CV", "PV")]
             .iter()
-            .find_map(|(reached, preset)| call.block.output(reached).and_then(|_| call.block.input(preset)));
+            .find_map(|(reached, preset)| block.output(reached).and_then(|_| block.input(preset)));
         let wired = call.inputs.iter().find(|input| Some(input.pin) == preset);
         let Some(Input { wire: Wire::Value(expression), .. }) = wired else { return };
-        presets[call.instance.index()] = match &expression.kind {
+        presets[instance.variable.index()] = match &expression.kind {
             ExpressionKind::Constant(value) => Some(Preset::Constant(*value)),
-            ExpressionKind::Read(Place { variable, pin: None, bit: None }) => {
+            ExpressionKind::Read(Place { variable, path, bit: None }) if path.is_empty() => {
                 slot(layout, &checked.variable(*variable).name).map(Preset::Slot)
             }
             _ => None,

@@ -1,0 +1,153 @@
+//! Initial values: constants for what is elementary, and lists for what has parts. It must never make more values than the type
+//! has elements, whatever a repetition says.
+
+use super::model::{Initial, PinId, Step, Type};
+use super::{Checker, types};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::{Elementary, Value};
+use crate::ladder::{self, ArrayItem, Expression, ExpressionKind, MemberValue, key};
+use crate::source::Span;
+
+impl Checker<'_> {
+    /// What a declaration starts with, which names a type or else is a BOOL.
+    pub(super) fn declared_initial(
+        &mut self,
+        declared: &ladder::Variable,
+        initial: &Expression,
+        ty: Type,
+    ) -> Option<Initial> {
+        if declared.ty.is_some() {
+            return self.initial(initial, ty);
+        }
+        let operand = self.operand(initial)?;
+        let name = &declared.name.text;
+        if let Some(other) = operand.other_than_bool() {
+            let message = format!("without a type `{name}` is a BOOL, and this is not");
+            let problem = Diagnostic::new(Code::TypeMismatch, initial.span, message);
+            self.report.push(problem.hint(format!("write its type, as in `{name} : {other}`")));
+            return None;
+        }
+        let value = self.coerce(operand, Elementary::Bool, initial.span)?.constant();
+        self.constant_initial(value, initial.span)
+    }
+
+    /// What something of a type starts with. `None`: that was reported.
+    pub(super) fn initial(&mut self, initial: &Expression, ty: Type) -> Option<Initial> {
+        match (&initial.kind, ty) {
+            (_, Type::Elementary(ty)) => {
+                let value = self.value(initial, ty)?.constant();
+                self.constant_initial(value, initial.span)
+            }
+            (ExpressionKind::Array(items), Type::Array(array)) => {
+                let array = &self.types.arrays[array.index()];
+                let (count, element) = (array.count() as usize, array.element);
+                let mut elements = Vec::new();
+                self.elements(items, element, count, &mut elements, initial.span)?;
+                elements.resize(count, Initial::Default);
+                Some(Initial::Elements(elements))
+            }
+            (ExpressionKind::Structure(members), Type::Structure(_) | Type::Block(_) | Type::Unit(_)) => {
+                self.members(members, ty).map(Initial::Members)
+            }
+            _ => {
+                let example = match ty {
+                    Type::Array(_) => "[1, 2, 8(0)]",
+                    _ => "(x := 1, y := 2)",
+                };
+                let message = format!("this is no initial value for {}", types::with_article(&self.type_name(ty)));
+                let problem = Diagnostic::new(Code::TypeMismatch, initial.span, message);
+                self.report.push(problem.hint(format!("write it as `{example}`")));
+                None
+            }
+        }
+    }
+
+    fn constant_initial(&mut self, value: Option<Value>, span: Span) -> Option<Initial> {
+        if value.is_none() {
+            let problem = Diagnostic::new(Code::NotConstant, span, "an initial value must be a constant");
+            self.report.push(problem.hint("write a literal, or name what `const` declares"));
+        }
+        value.map(Initial::Value)
+    }
+
+    /// The elements that a list is for, at most `count`. A list within a list is for as many as it has.
+    fn elements(
+        &mut self,
+        items: &[ArrayItem],
+        element: Type,
+        count: usize,
+        elements: &mut Vec<Initial>,
+        span: Span,
+    ) -> Option<()> {
+        for item in items {
+            let repeat = match &item.repeat {
+                None => 1,
+                Some(repeat) => usize::try_from(self.bound(repeat)?).unwrap_or(0),
+            };
+            let start = elements.len();
+            match &item.value {
+                None => elements.push(Initial::Default),
+                Some(Expression { kind: ExpressionKind::Array(inner), span }) if !matches!(element, Type::Array(_)) => {
+                    self.elements(inner, element, count, elements, *span)?;
+                }
+                Some(value) => elements.push(self.initial(value, element)?),
+            }
+            let one: Vec<Initial> = elements.drain(start..).collect();
+            if one.len().checked_mul(repeat).is_none_or(|more| more > count.saturating_sub(elements.len())) {
+                let message = format!("there are more values here than the {count} elements of the array");
+                self.report.push(Diagnostic::new(Code::OutOfRange, span, message));
+                return None;
+            }
+            for _ in 0..repeat {
+                elements.extend_from_slice(&one);
+            }
+        }
+        Some(())
+    }
+
+    fn members(&mut self, members: &[MemberValue], ty: Type) -> Option<Vec<(Step, Initial)>> {
+        let mut found: Vec<(Step, Initial)> = Vec::with_capacity(members.len());
+        let mut whole = true;
+        for member in members {
+            let Some((step, ty)) = self.initial_member(ty, &member.member.text) else {
+                let message = format!("{} has no `{}`", types::with_article(&self.type_name(ty)), member.member.text);
+                self.report.push(Diagnostic::new(Code::UnknownMember, member.member.span, message));
+                whole = false;
+                continue;
+            };
+            if found.iter().any(|(other, _)| *other == step) {
+                let message = format!("`{}` is given twice", member.member.text);
+                self.report.push(Diagnostic::new(Code::DuplicateClause, member.member.span, message));
+                whole = false;
+            }
+            match self.initial(&member.value, ty) {
+                Some(initial) => found.push((step, initial)),
+                None => whole = false,
+            }
+        }
+        whole.then_some(found)
+    }
+
+    /// The member of that name that an initial value can be for.
+    fn initial_member(&self, ty: Type, name: &str) -> Option<(Step, Type)> {
+        match ty {
+            Type::Structure(structure) => {
+                let fields = &self.types.structures[structure.index()].fields;
+                let place = fields.iter().position(|field| key(&field.name) == key(name))?;
+                Some((Step::Field(place), fields[place].ty))
+            }
+            Type::Block(block) => {
+                let (pin, pins) = match block.output(name) {
+                    Some(pin) => (PinId::Output(pin), block.outputs()[pin]),
+                    None => block.input(name).map(|pin| (PinId::Input(pin), block.inputs()[pin]))?,
+                };
+                Some((Step::Pin(pin), Type::Elementary(pins.ty)))
+            }
+            Type::Unit(unit) => {
+                let variable = self.scope.find_in(unit, name)?;
+                Some((Step::Variable(variable), self.scope.entry(variable).variable.ty))
+            }
+            Type::Elementary(_) | Type::Array(_) => None,
+        }
+    }
+}

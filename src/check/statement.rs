@@ -1,0 +1,182 @@
+//! Structured text in braces: assignments, calls, choices and loops with constant bounds. A loop must end, and its turns are
+//! written out, so that how often it turns is known here.
+
+use super::Checker;
+use super::model::{Place, Statement, Type};
+use super::network::Walk;
+use super::types;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::{Elementary, Value};
+use crate::ladder::{self, CaseLabel, Expression, ExpressionKind, Reference, StatementKind};
+use crate::source::Span;
+
+/// The most turns of one loop.
+const MOST_TURNS: i128 = 1 << 16;
+
+impl Checker<'_> {
+    /// Statements; what is faulty was reported and is left out.
+    pub(super) fn statements(&mut self, statements: &[ladder::Statement], walk: &mut Walk) -> Vec<Statement> {
+        statements.iter().filter_map(|statement| self.statement(statement, walk)).collect()
+    }
+
+    fn statement(&mut self, statement: &ladder::Statement, walk: &mut Walk) -> Option<Statement> {
+        match &statement.kind {
+            StatementKind::Assignment { target, value } => self.assign(target, value),
+            StatementKind::Call(call) => self.call(call, statement.span, false, walk).map(Statement::Call),
+            StatementKind::If { branches, otherwise } => {
+                let mut checked = Vec::with_capacity(branches.len());
+                for branch in branches {
+                    let condition = self.value(&branch.condition, Elementary::Bool);
+                    let body = self.statements(&branch.body, walk);
+                    checked.extend(condition.map(|condition| (condition, body)));
+                }
+                let otherwise = self.statements(otherwise, walk);
+                Some(Statement::If { branches: checked, otherwise })
+            }
+            StatementKind::Case { selector, branches, otherwise } => self.case(selector, branches, otherwise, walk),
+            StatementKind::For { variable, first, last, step, body } => {
+                let bounds = [Some(first), Some(last), step.as_ref()];
+                self.repeat(variable, bounds, body, statement.span, walk)
+            }
+            StatementKind::Exit if self.loops == 0 => {
+                let problem =
+                    Diagnostic::new(Code::MisplacedJump, statement.span, "EXIT leaves a FOR, and there is none here");
+                self.report.push(problem);
+                None
+            }
+            StatementKind::Exit => Some(Statement::Exit),
+            StatementKind::Return => Some(Statement::Return),
+        }
+    }
+
+    /// An assignment of a value, or of a whole array or structure.
+    pub(super) fn assign(&mut self, target: &Reference, value: &Expression) -> Option<Statement> {
+        let written = self.written(target);
+        let Some((place, ty)) = written else {
+            // Only for what is wrong in it.
+            self.operand(value);
+            return None;
+        };
+        match ty {
+            Type::Elementary(ty) => {
+                let value = self.value(value, ty)?;
+                Some(Statement::Assignment { target: place, value })
+            }
+            Type::Array(_) | Type::Structure(_) if !self.holds_instance(ty) => {
+                let source = self.source(value, ty)?;
+                Some(Statement::Copy { target: place, source })
+            }
+            _ => {
+                let message = format!("{} cannot be assigned to", types::with_article(&self.type_name(ty)));
+                self.report.push(Diagnostic::new(Code::NotWritable, target.span, message));
+                None
+            }
+        }
+    }
+
+    /// What a whole array or structure gets: another of its type.
+    fn source(&mut self, value: &Expression, ty: Type) -> Option<Place> {
+        let found = match &value.kind {
+            ExpressionKind::Read(reference) => {
+                let (place, found) = self.place(reference)?;
+                if found == ty && place.bit.is_none() {
+                    return Some(place);
+                }
+                self.type_name(found)
+            }
+            _ => "a value".to_owned(),
+        };
+        let [wants, found] = [self.type_name(ty), found].map(|name| types::with_article(&name));
+        let message = format!("{wants} is expected here, and this is {found}");
+        self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
+        None
+    }
+
+    fn case(
+        &mut self,
+        selector: &Expression,
+        branches: &[ladder::CaseBranch],
+        otherwise: &[ladder::Statement],
+        walk: &mut Walk,
+    ) -> Option<Statement> {
+        let operand = self.operand(selector);
+        let ty = operand.as_ref().and_then(|operand| operand.other_than_bool());
+        let ty = ty.filter(|ty| ty.is_integer() || ty.is_bit_string());
+        if operand.is_some() && ty.is_none() {
+            let problem = Diagnostic::new(Code::TypeMismatch, selector.span, "CASE compares integers");
+            self.report.push(problem.hint("use IF for other conditions"));
+        }
+        let mut checked = Vec::with_capacity(branches.len());
+        for branch in branches {
+            let labels: Vec<(Value, Value)> = branch.labels.iter().filter_map(|label| self.label(label, ty?)).collect();
+            checked.push((labels, self.statements(&branch.body, walk)));
+        }
+        let otherwise = self.statements(otherwise, walk);
+        let selector = self.coerce(operand?, ty?, selector.span)?;
+        Some(Statement::Case { selector, branches: checked, otherwise })
+    }
+
+    fn label(&mut self, label: &CaseLabel, ty: Elementary) -> Option<(Value, Value)> {
+        let first = self.constant_of(&label.first, ty);
+        let last = match &label.last {
+            Some(last) => self.constant_of(last, ty),
+            None => first,
+        };
+        Some((first?, last?))
+    }
+
+    fn constant_of(&mut self, expression: &Expression, ty: Elementary) -> Option<Value> {
+        let value = self.value(expression, ty)?.constant();
+        if value.is_none() {
+            self.report.push(Diagnostic::new(Code::NotConstant, expression.span, "this must be a constant"));
+        }
+        value
+    }
+
+    fn repeat(
+        &mut self,
+        variable: &Reference,
+        bounds: [Option<&Expression>; 3],
+        body: &[ladder::Statement],
+        span: Span,
+        walk: &mut Walk,
+    ) -> Option<Statement> {
+        let written = self.write(variable).filter(|(place, ty)| {
+            let fits = ty.is_integer() && place.path.is_empty();
+            if !fits {
+                let message = "a FOR counts with an integer variable";
+                self.report.push(Diagnostic::new(Code::TypeMismatch, variable.span, message));
+            }
+            fits
+        });
+        let ty = written.as_ref().map_or(Elementary::Lint, |(_, ty)| *ty);
+        let [first, last, step] = bounds.map(|bound| {
+            let Some(bound) = bound else { return Some(1) };
+            let problem = "how often a FOR turns must be known before the program runs: this must be a constant";
+            let value = self.value(bound, ty)?.constant();
+            if value.is_none() {
+                let problem = Diagnostic::new(Code::NotConstant, bound.span, problem);
+                self.report.push(problem.hint("turn a constant number of times, and leave with EXIT"));
+            }
+            value?.as_integer()
+        });
+        self.loops += 1;
+        let body = self.statements(body, walk);
+        self.loops -= 1;
+        let (first, last, step) = (first?, last?, step?);
+        if step == 0 {
+            self.report.push(Diagnostic::new(Code::OutOfRange, span, "a FOR with steps of 0 never ends"));
+            return None;
+        }
+        let turns = if (last - first).signum() * step.signum() < 0 { 0 } else { (last - first) / step + 1 };
+        let count = u32::try_from(turns).ok().filter(|_| turns <= MOST_TURNS);
+        let Some(count) = count else {
+            let message = format!("this FOR turns {turns} times");
+            let problem = Diagnostic::new(Code::TooLargeInlined, span, message);
+            self.report.push(problem.hint(format!("its turns are written out, at most {MOST_TURNS}")));
+            return None;
+        };
+        let first = Value::integer(ty, first)?;
+        Some(Statement::For { variable: written?.0, first, step, count, body })
+    }
+}
