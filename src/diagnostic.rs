@@ -71,6 +71,7 @@ codes! {
     BadLiteral = 205 Error "a literal that cannot be read",
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
+    UnboundedLoop = 208 Error "a loop without a constant number of times",
     BadXml = 221 Error "XML that cannot be read",
     BadElement = 222 Error "an element that lacks what it needs",
     // Names.

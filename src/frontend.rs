@@ -5,6 +5,7 @@
 
 pub mod native;
 pub mod plcopen;
+mod text;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;

@@ -404,7 +404,7 @@ pub struct BlockCall {
 /// One wired pin.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Argument {
-    /// The pin.
+    /// The pin; of an argument that only its place tells, a name without letters.
     pub pin: Name,
     /// What is wired to it.
     pub wire: Wire,

@@ -5,29 +5,17 @@
 
 mod declarations;
 mod elements;
-mod expressions;
-mod lexer;
-pub(super) mod literals;
 mod parser;
 mod print;
 mod rungs;
-mod token;
+mod units;
 
 pub use print::print;
 
+pub use super::text::{MAXIMUM_DEPTH, MOST_DIAGNOSTICS, MOST_TOKENS};
+
 use super::Parsed;
 use crate::source::Source;
-
-/// How deep circuits, parentheses and expressions may nest. A limit, so that no text can exhaust the stack of
-/// whatever walks the program.
-pub const MAXIMUM_DEPTH: usize = 128;
-
-/// How many words, signs and comments a file may have, those copied to the names of one declaration included. Each makes
-/// at most some hundred bytes of a program, so that no file takes more than a few gigabytes.
-pub const MOST_TOKENS: usize = 1 << 22;
-
-/// How many diagnostics one run gives before it stops reading.
-pub const MOST_DIAGNOSTICS: usize = 200;
 
 /// Reads native text. After a syntax error it goes on at the next declaration or rung, and the program holds the
 /// others.

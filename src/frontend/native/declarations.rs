@@ -1,9 +1,9 @@
 //! Declarations: `var runs, faults : INT at %MW4 := 5 retain`.
 
-use super::parser::{Parse, Parser};
-use super::token::Kind;
-use super::{elements, literals};
+use super::parser::{Parser, Place};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::text::Parse;
+use crate::frontend::text::token::Kind;
 use crate::ladder::{Address, Expression, Name, TypeReference, Variable, VariableClass};
 use crate::source::Span;
 
@@ -17,13 +17,22 @@ struct Clauses {
 }
 
 impl Parser<'_> {
+    /// A declaration of the current unit.
     pub(super) fn declaration(&mut self, class: VariableClass) -> Parse<()> {
         let start = self.token.span;
-        if !self.program.units[0].rungs.is_empty() {
+        self.come_to(Place::Units, start);
+        if !self.unit().rungs.is_empty() {
             let problem = Diagnostic::new(Code::UnexpectedToken, start, "a declaration stands behind a rung");
             self.report(problem.hint("declarations stand before the first rung"));
         }
         self.advance();
+        let variables = self.variables(class, start)?;
+        self.unit().variables.extend(variables);
+        Ok(())
+    }
+
+    /// What stands behind the keywords, which began at `start`.
+    pub(super) fn variables(&mut self, class: VariableClass, start: Span) -> Parse<Vec<Variable>> {
         let mut names = Vec::new();
         loop {
             let at = self.token.span.start;
@@ -33,18 +42,10 @@ impl Parser<'_> {
                 break;
             }
         }
-        let (clauses_start, tokens_before) = (self.end, self.tokens_left);
+        let from = self.copied_from();
         let clauses = self.clauses()?;
         let span = self.since(start.start);
-        // A long clause behind many names must not make a large program of a small file.
-        let copied = (names.len() - 1).saturating_mul(self.since(clauses_start).range().len());
-        let copied_tokens = (names.len() - 1).saturating_mul(tokens_before - self.tokens_left);
-        if copied > self.copies_left || copied_tokens > self.tokens_left {
-            let problem = Diagnostic::new(Code::FileTooLarge, span, "these clauses are too long for so many names");
-            return self.give_up(problem.hint("declare the variables one by one, or in smaller groups"));
-        }
-        self.copies_left -= copied;
-        self.tokens_left -= copied_tokens;
+        self.count_copies(&from, names.len(), span)?;
         self.item_end("a clause (`: TYPE`, `at`, `:=`, `retain`), another declaration or a rung")?;
         let mut variable = Variable {
             class,
@@ -55,12 +56,13 @@ impl Parser<'_> {
             retain: clauses.retain.is_some(),
             span,
         };
+        let mut variables = Vec::with_capacity(names.len());
         if let Some(last) = names.pop() {
-            self.program.units[0].variables.extend(names.into_iter().map(|name| Variable { name, ..variable.clone() }));
+            variables.extend(names.into_iter().map(|name| Variable { name, ..variable.clone() }));
             variable.name = last;
-            self.program.units[0].variables.push(variable);
+            variables.push(variable);
         }
-        Ok(())
+        Ok(variables)
     }
 
     fn clauses(&mut self) -> Parse<Clauses> {
@@ -68,10 +70,10 @@ impl Parser<'_> {
         loop {
             let start = self.token.span.start;
             if self.take(Kind::Colon) {
-                let name = self.name("the name of a type")?;
-                self.clause(&mut clauses.ty, TypeReference::of_name(name), start, "type");
+                let ty = self.type_reference()?;
+                self.clause(&mut clauses.ty, ty, start, "type");
             } else if self.take(Kind::Assign) {
-                let initial = self.expression()?;
+                let initial = self.initial_value()?;
                 self.clause(&mut clauses.initial, initial, start, "initial value");
             } else if self.at_word("retain") {
                 self.advance();
@@ -113,16 +115,5 @@ impl Parser<'_> {
                 self.report(problem.related(*first, "here"));
             }
         }
-    }
-
-    /// The address that is the current token. One that cannot be read is reported, and another put in its place.
-    pub(super) fn address(&mut self) -> Address {
-        let span = self.token.span;
-        let address = literals::address(self.source.slice(span), span).unwrap_or_else(|problem| {
-            self.report_literal(Code::BadAddress, span, problem);
-            elements::placeholder_address(span)
-        });
-        self.advance();
-        address
     }
 }

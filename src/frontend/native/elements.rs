@@ -1,19 +1,30 @@
 //! Elements of a branch: contacts, coils, blocks, braces and parallels.
 
-use super::parser::{Parse, Parser};
-use super::token::{Keyword, Kind};
+use super::parser::Parser;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::text::token::{Keyword, Kind, Token};
+use crate::frontend::text::{Braces, Parse, Reader};
 use crate::ladder::{
-    Address, Area, Argument, BlockCall, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
-    Literal, Name, Reference, Root, Width, Wire,
+    Argument, BlockCall, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Literal, Name,
+    Reference, Root, Step, Wire,
 };
-use crate::source::Span;
 
 const COIL_HINT: &str = "a coil stands in parentheses: (name), or with S, R, P, N or / before the name";
 
-/// What stands in for an address that cannot be read.
-pub(super) fn placeholder_address(span: Span) -> Address {
-    Address { area: Area::Memory, width: Width::Bit, numbers: vec![0], span }
+const LONE: &str = "braces hold one expression, one assignment, or statements with a semicolon behind each";
+
+/// Whether a keyword names a function too.
+const fn is_function(keyword: Keyword) -> bool {
+    matches!(keyword, Keyword::And | Keyword::Or | Keyword::Xor | Keyword::Not | Keyword::Mod)
+}
+
+/// Whether something of this name can be called: an instance does not end with a bit.
+fn can_be_called(reference: &Reference) -> bool {
+    matches!(reference.root, Root::Name(_)) && !matches!(reference.steps.last(), Some(Step::Bit(..)))
+}
+
+fn read(reference: Reference) -> Expression {
+    Expression { span: reference.span, kind: ExpressionKind::Read(reference) }
 }
 
 impl Parser<'_> {
@@ -30,6 +41,7 @@ impl Parser<'_> {
             Kind::LeftBrace => self.braces()?,
             Kind::Jump => self.jump()?,
             Kind::Name | Kind::QuotedName => self.contact_or_block()?,
+            Kind::Keyword(keyword) if is_function(keyword) => self.function_box()?,
             _ => self.contact()?,
         };
         Ok(Some(Element { kind, span: self.since(start) }))
@@ -52,29 +64,22 @@ impl Parser<'_> {
                 Expression { kind: ExpressionKind::Literal(value), span }
             }
             Kind::Name | Kind::QuotedName | Kind::Address => self.contact_operand()?,
-            _ => return self.no_element(span),
+            _ => {
+                let found = self.token;
+                return self.no_element(found);
+            }
         };
         Ok(ElementKind::Contact { kind, operand })
     }
 
     fn contact_operand(&mut self) -> Parse<Expression> {
-        let reference = self.reference("a variable")?;
-        self.no_index()?;
-        Ok(Expression { span: reference.span, kind: ExpressionKind::Read(reference) })
+        Ok(read(self.reference_in_circuit("a variable")?))
     }
 
-    /// `name[` will be an index one day, and must not be a contact and a parallel until then.
-    fn no_index(&mut self) -> Parse<()> {
-        if self.token.kind == Kind::LeftBracket && self.touching() {
-            let problem = Diagnostic::new(Code::UnexpectedToken, self.token.span, "`[` touches the name before it");
-            return self.give_up(problem.hint("put a space before the bracket of a parallel"));
-        }
-        Ok(())
-    }
-
-    fn no_element(&mut self, span: Span) -> Parse<ElementKind> {
-        let problem = self.unexpected("an element");
-        let hint = match self.token.kind {
+    /// The complaint that no element starts with this token.
+    fn no_element(&mut self, found: Token) -> Parse<ElementKind> {
+        let problem = self.unexpected_token(found, "an element");
+        let hint = match found.kind {
             Kind::Assign => "an assignment stands in braces: {name := value}",
             Kind::Equal | Kind::NotEqual | Kind::Less | Kind::LessOrEqual | Kind::GreaterOrEqual => {
                 "a comparison stands in braces: {a > b}"
@@ -87,11 +92,15 @@ impl Parser<'_> {
             Kind::Keyword(Keyword::Or) => "contacts in parallel stand in brackets: [ a | b ]",
             Kind::Keyword(Keyword::Not) => "a closed contact is written /name",
             Kind::Keyword(Keyword::Xor) => "operators stand in braces: {a XOR b}",
+            Kind::Semicolon => "nothing ends with a semicolon here",
+            Kind::Keyword(Keyword::If | Keyword::Case | Keyword::For | Keyword::Exit | Keyword::Return) => {
+                "statements stand in braces: {IF a THEN b := 1; END_IF;}"
+            }
             Kind::Text => "a rung has one title, before its circuit",
             Kind::Dot => "a member follows its variable: delay.Q",
             _ => "an element is a contact, a coil in parentheses, a block, braces, or a parallel in brackets",
         };
-        self.give_up(Diagnostic { span, ..problem }.hint(hint))
+        self.give_up(problem.hint(hint))
     }
 
     fn coil(&mut self) -> Parse<ElementKind> {
@@ -128,34 +137,29 @@ impl Parser<'_> {
             Some(kind) if self.token.kind.is_name() || self.token.kind == Kind::Address => {
                 Ok((kind, self.reference(EXPECTED)?))
             }
-            _ => Ok((CoilKind::Plain, self.steps(name)?)),
+            _ => Ok((CoilKind::Plain, self.reference_from(name)?)),
         }
     }
 
     fn braces(&mut self) -> Parse<ElementKind> {
         let open = self.token.span;
         self.advance();
-        let expression = self.expression()?;
-        let kind = if self.token.kind == Kind::Assign {
-            let ExpressionKind::Read(target) = expression.kind else {
-                let problem =
-                    Diagnostic::new(Code::UnexpectedToken, expression.span, "only a variable can be assigned to");
-                return self.give_up(problem.hint("to compare, write ="));
-            };
-            self.advance();
-            ElementKind::Assignment { target, value: self.expression()? }
-        } else {
-            ElementKind::Condition(expression)
+        let (kind, hint) = match Reader::braces(self)? {
+            Braces::Condition(condition) => (ElementKind::Condition(condition), LONE),
+            Braces::Assignment { target, value } => (ElementKind::Assignment { target, value }, LONE),
+            Braces::Statements(statements) => {
+                self.anchor_here();
+                (ElementKind::Statements(statements), "braces hold statements, each with a semicolon behind it")
+            }
         };
-        self.close(Kind::RightBrace, open, "braces hold one expression or one assignment")?;
+        self.close(Kind::RightBrace, open, hint)?;
         Ok(kind)
     }
 
     /// `>> name`, `>> return`
     fn jump(&mut self) -> Parse<ElementKind> {
         self.advance();
-        if self.at_word("return") {
-            self.advance();
+        if self.take(Kind::Keyword(Keyword::Return)) {
             return Ok(ElementKind::Return);
         }
         Ok(ElementKind::Jump { target: self.name("the name of a rung, or `return`")? })
@@ -163,9 +167,9 @@ impl Parser<'_> {
 
     /// What starts with a name: a block if a `:` or a touching `(` follows, else a contact.
     fn contact_or_block(&mut self) -> Parse<ElementKind> {
-        let name = self.name("a variable")?;
+        let reference = self.reference_in_circuit("a variable")?;
         match self.token.kind {
-            Kind::Colon => {
+            Kind::Colon if reference.steps.is_empty() => {
                 self.advance();
                 let type_name = self.name("the block's type")?;
                 if self.token.kind != Kind::LeftParenthesis {
@@ -178,19 +182,25 @@ impl Parser<'_> {
                     let problem = Diagnostic::new(Code::UnexpectedToken, self.token.span, message);
                     self.report(problem.hint("a parenthesis behind white space is a coil"));
                 }
-                self.block(name, Some(type_name))
+                self.block(reference, Some(type_name))
             }
-            Kind::LeftParenthesis if self.touching() => self.block(name, None),
-            _ => {
-                let reference = self.steps(name)?;
-                self.no_index()?;
-                let operand = Expression { span: reference.span, kind: ExpressionKind::Read(reference) };
-                Ok(ElementKind::Contact { kind: ContactKind::Open, operand })
-            }
+            Kind::LeftParenthesis if self.touching() && can_be_called(&reference) => self.block(reference, None),
+            _ => Ok(ElementKind::Contact { kind: ContactKind::Open, operand: read(reference) }),
         }
     }
 
-    fn block(&mut self, instance: Name, type_name: Option<Name>) -> Parse<ElementKind> {
+    /// A function that is named like an operator: `AND(IN1 := a, IN2 := b)`.
+    fn function_box(&mut self) -> Parse<ElementKind> {
+        let word = self.token;
+        self.advance();
+        if self.token.kind != Kind::LeftParenthesis || !self.touching() {
+            return self.no_element(word);
+        }
+        let function = Name::new(self.source.slice(word.span), word.span);
+        self.block(Reference::of_name(function), None)
+    }
+
+    fn block(&mut self, instance: Reference, type_name: Option<Name>) -> Parse<ElementKind> {
         let open = self.token.span;
         self.advance();
         let mut arguments = Vec::new();
@@ -206,8 +216,8 @@ impl Parser<'_> {
         }
         self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
         let power_output = if self.take(Kind::Dot) { Some(self.name("an output of the block")?) } else { None };
-        self.anchor(self.end - 1);
-        let instance = Reference::of_name(instance);
+        let closed = self.end - 1;
+        self.anchor(closed);
         Ok(ElementKind::Block(BlockCall { instance, type_name, arguments, power_output }))
     }
 
@@ -237,21 +247,5 @@ impl Parser<'_> {
             return self.give_up(problem);
         };
         Ok(Some(Argument { pin, wire, span: self.since(start) }))
-    }
-
-    /// A name or an address, with its members and bits.
-    pub(super) fn reference(&mut self, expected: &str) -> Parse<Reference> {
-        if self.token.kind == Kind::Address {
-            let address = self.address();
-            let start = address.span;
-            return self.steps_from(Root::Address(address), start);
-        }
-        let name = self.name(expected)?;
-        self.steps(name)
-    }
-
-    fn steps(&mut self, name: Name) -> Parse<Reference> {
-        let start = name.span;
-        self.steps_from(Root::Name(name), start)
     }
 }

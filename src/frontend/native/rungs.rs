@@ -1,15 +1,17 @@
 //! Rungs, circuits and branches: `rung r10 "title"`, `[ a | b ]`, `>node> a >other>`.
 
-use super::literals;
-use super::parser::{Parse, Parser};
-use super::token::Kind;
+use super::parser::{Parser, Place};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::text::token::Kind;
+use crate::frontend::text::{Parse, literals};
 use crate::ladder::{Branch, Circuit, Name, Rung};
 use crate::source::Span;
 
 impl Parser<'_> {
     pub(super) fn rung(&mut self) -> Parse<()> {
-        let start = self.token.span.start;
+        let first = self.token.span;
+        let start = first.start;
+        self.come_to(Place::Units, first);
         self.anchor(start);
         self.advance();
         let enabled = !self.at_word("off") || self.token.first_on_line;
@@ -40,7 +42,7 @@ impl Parser<'_> {
         }
         self.item_end("an element, a `|` or another rung")?;
         let rung = Rung { name, title, enabled, circuit, span: self.since(start) };
-        self.program.units[0].rungs.push(rung);
+        self.unit().rungs.push(rung);
         Ok(())
     }
 
@@ -73,7 +75,7 @@ impl Parser<'_> {
             return Ok(None);
         }
         let mut circuit = self.circuit()?;
-        self.anchor(self.token.span.start);
+        self.anchor_here();
         self.close(Kind::RightBracket, open, "")?;
         self.leave();
         circuit.span = self.since(open.start);
@@ -119,7 +121,7 @@ impl Parser<'_> {
     /// `>name>`
     fn node(&mut self) -> Parse<Name> {
         self.advance();
-        self.anchor(self.token.span.start);
+        self.anchor_here();
         let name = self.name("the name of a node")?;
         if !self.take(Kind::Greater) {
             let problem = self.unexpected("`>`").hint("a node is written >name>, and a comparison stands in braces");

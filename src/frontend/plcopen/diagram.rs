@@ -199,7 +199,7 @@ struct Reader<'r> {
 fn number(node: Node<'_, '_>, name: &str) -> Option<i64> {
     // Some tools write fractions.
     let text = node.attribute(name)?;
-    text.split('.').next()?.parse().ok()
+    text.split('.').next()?.parse::<i32>().ok().map(i64::from)
 }
 
 fn modifier(node: Node<'_, '_>) -> Modifier {

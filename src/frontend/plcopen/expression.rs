@@ -3,7 +3,7 @@
 //! Every part gets one span, that of the element around it. Nothing here looks a name up.
 
 use crate::elementary::Elementary;
-use crate::frontend::native::literals;
+use crate::frontend::text::literals;
 use crate::ladder::{
     ArrayItem, BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, MemberValue, Name, Reference,
     Root, Step, UnaryOperator,
@@ -247,7 +247,7 @@ impl<'a> Parser<'a> {
         }
         let text = &rest[..end];
         self.at += end;
-        match literals::literal(text) {
+        match literals::literal(text, self.span) {
             Ok((false, literal)) => Ok(self.make(ExpressionKind::Literal(literal))),
             Ok((true, literal)) => {
                 let magnitude = self.make(ExpressionKind::Literal(literal));

@@ -47,15 +47,18 @@ struct Placed {
     rung: Rung,
     top: i64,
     bottom: i64,
+    left: i64,
 }
 
 impl Placed {
     fn new(diagram: &Diagram, vertices: &[Vertex], members: &[usize]) -> Self {
         let span = members.first().map_or(Span::default(), |first| vertices[*first].span);
         let circuit = network::circuit(vertices, members, span);
-        let heights = || members.iter().map(|member| diagram.items[vertices[*member].item].y);
-        let (top, bottom) = (heights().min().unwrap_or(0), heights().max().unwrap_or(0));
-        Self { rung: Rung { name: None, title: None, enabled: true, circuit, span }, top, bottom }
+        let items = || members.iter().map(|member| &diagram.items[vertices[*member].item]);
+        let top = items().map(|item| item.y).min().unwrap_or(0);
+        let bottom = items().map(|item| item.y).max().unwrap_or(0);
+        let left = items().map(|item| item.x).min().unwrap_or(0);
+        Self { rung: Rung { name: None, title: None, enabled: true, circuit, span }, top, bottom, left }
     }
 
     /// A rung with nothing but a name.
@@ -63,7 +66,7 @@ impl Placed {
         let span = name.span;
         let branch = crate::ladder::Branch { from: None, elements: Vec::new(), to: None, span };
         let circuit = Circuit { branches: vec![branch], span };
-        Self { rung: Rung { name: Some(name), title: None, enabled: true, circuit, span }, top: y, bottom: y }
+        Self { rung: Rung { name: Some(name), title: None, enabled: true, circuit, span }, top: y, bottom: y, left: 0 }
     }
 }
 
@@ -81,14 +84,19 @@ fn label(diagram: &Diagram, rungs: &mut Vec<Placed>) {
 
 /// A short comment is the title of the rung that it stands beside or above; others are kept before the rungs.
 fn title(diagram: &Diagram, rungs: &mut [Placed], body: Span, comments: &mut Vec<Comment>) {
+    // Positions are any numbers that a file has; differences of these cannot overflow.
     for item in &diagram.items {
         let ItemKind::Comment(text) = &item.kind else { continue };
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
         if line.is_empty() {
             continue;
         }
-        let below = rungs.iter_mut().filter(|placed| placed.bottom >= item.y).min_by_key(|placed| placed.top);
-        match below {
+        // The nearest, of those as near the one to the right of it.
+        let away = |placed: &Placed| {
+            let up_or_down = (placed.top - item.y).max(item.y - placed.bottom).max(0);
+            (up_or_down, (placed.left - item.x).abs())
+        };
+        match rungs.iter_mut().min_by_key(|placed| away(placed)) {
             Some(placed) if placed.rung.title.is_none() && line.chars().count() <= LONGEST_TITLE => {
                 placed.rung.title = Some(line);
             }

@@ -1,14 +1,16 @@
 //! What literals, addresses and titles say. The lexer has found where they end; nothing here reads tokens.
 
 use crate::elementary::Elementary;
-use crate::ladder::{Address, Area, Literal, Width};
+use crate::ladder::{Address, Area, Literal, Name, Width};
 use crate::source::Span;
+
+use super::token::{continues_name, starts_name};
 
 /// Why a literal cannot be read, and what to write instead.
 #[derive(PartialEq, Eq, Debug)]
-pub(in crate::frontend) struct Problem {
-    pub(in crate::frontend) message: String,
-    pub(in crate::frontend) hint: Option<&'static str>,
+pub(crate) struct Problem {
+    pub(crate) message: String,
+    pub(crate) hint: Option<&'static str>,
 }
 
 impl Problem {
@@ -22,12 +24,20 @@ impl Problem {
 }
 
 /// A literal, and whether a minus sign stands behind its type (`INT#-5`), which is then an operator on it.
-pub(in crate::frontend) fn literal(text: &str) -> Result<(bool, Literal), Problem> {
-    let Some((prefix, rest)) = text.split_once('#') else {
+pub(crate) fn literal(text: &str, span: Span) -> Result<(bool, Literal), Problem> {
+    let Some((prefix, rest)) = split_type(text) else {
         return Ok((false, number(text, None)?));
     };
     if prefix.starts_with(|first: char| first.is_ascii_digit()) {
         return Ok((false, number(text, None)?));
+    }
+    if let Some(value) = name(rest).filter(|_| Elementary::from_name(prefix).is_none())
+        && let Some(ty) = name(prefix)
+    {
+        let start = span.range().start;
+        let ty = Name::new(ty, Span::new(start, start + prefix.len()));
+        let value = Name::new(value, Span::new(start + prefix.len() + 1, start + text.len()));
+        return Ok((false, Literal::Enumerated { ty, value }));
     }
     if prefix.eq_ignore_ascii_case("T") || prefix.eq_ignore_ascii_case("TIME") {
         return Ok((false, Literal::Time(duration(rest)?)));
@@ -41,6 +51,21 @@ pub(in crate::frontend) fn literal(text: &str) -> Result<(bool, Literal), Proble
     }
     let (negative, magnitude) = signed(rest);
     Ok((negative, number(magnitude, Some(ty))?))
+}
+
+/// What stands before and behind the first `#` that is no part of a quoted name.
+fn split_type(text: &str) -> Option<(&str, &str)> {
+    let from = text.strip_prefix('`').and_then(|inner| inner.find('`')).map_or(0, |length| length + 1);
+    let at = from + text[from..].find('#')?;
+    Some((&text[..at], &text[at + 1..]))
+}
+
+/// The name that a text spells, with or without back quotes.
+fn name(text: &str) -> Option<&str> {
+    if let Some(quoted) = text.strip_prefix('`') {
+        return quoted.strip_suffix('`').filter(|name| !name.is_empty() && !name.contains(['`', '\r']));
+    }
+    (text.starts_with(starts_name) && text.chars().all(continues_name)).then_some(text)
 }
 
 fn signed(text: &str) -> (bool, &str) {
@@ -114,7 +139,7 @@ fn real(text: &str) -> Result<f64, Problem> {
 }
 
 /// The units of a duration, the greatest first, in nanoseconds.
-pub(super) const UNITS: [(&str, u64); 7] = [
+pub(crate) const UNITS: [(&str, u64); 7] = [
     ("d", 86_400_000_000_000),
     ("h", 3_600_000_000_000),
     ("m", 60_000_000_000),
@@ -125,7 +150,7 @@ pub(super) const UNITS: [(&str, u64); 7] = [
 ];
 
 /// Nanoseconds of what stands behind `T#`.
-fn duration(text: &str) -> Result<i64, Problem> {
+pub(crate) fn duration(text: &str) -> Result<i64, Problem> {
     let form = || Problem::new("this is not a duration").hint("a duration looks like T#1h30m, T#1.5s or T#-20ms");
     let too_large = || Problem::new("this duration is too large").hint("TIME reaches 292 years either way");
     let (negative, mut rest) = signed(text);
@@ -180,7 +205,7 @@ fn duration(text: &str) -> Result<i64, Problem> {
 }
 
 /// An address such as `%IX0.3`.
-pub(in crate::frontend) fn address(text: &str, span: Span) -> Result<Address, Problem> {
+pub(crate) fn address(text: &str, span: Span) -> Result<Address, Problem> {
     let form = || Problem::new("this is not an address").hint("an address looks like %IX0.3, %QW2 or %MD4");
     let mut letters = text.chars().skip(1).peekable();
     let area = match letters.next().map(|letter| letter.to_ascii_uppercase()) {
@@ -213,7 +238,7 @@ pub(in crate::frontend) fn address(text: &str, span: Span) -> Result<Address, Pr
 
 /// A title, from between its quotes, with IEC's escapes: `$$`, `$"`, `$N` or `$L`, `$R`, `$T`, and `$` with four
 /// hexadecimal digits.
-pub(super) fn title(text: &str) -> Result<String, Problem> {
+pub(crate) fn title(text: &str) -> Result<String, Problem> {
     let mut title = String::with_capacity(text.len());
     let mut rest = text;
     while let Some((plain, escape)) = rest.split_once('$') {

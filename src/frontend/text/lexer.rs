@@ -1,12 +1,13 @@
 //! From text to tokens, one at a time as the parser asks, so that a large file costs no more than its program.
 //! It must never fail: what has no meaning is a token of its own.
 
-use super::token::{Kind, Token, continues_name, keyword, starts_name};
+use super::token::{Dialect, Kind, Token, continues_name, keyword, starts_name};
 use crate::source::Span;
 
 /// Reads tokens from a text.
-pub(super) struct Lexer<'a> {
+pub(crate) struct Lexer<'a> {
     text: &'a str,
+    dialect: Dialect,
     at: usize,
     /// Nothing but white space was read since the last line break.
     first_on_line: bool,
@@ -16,17 +17,17 @@ pub(super) struct Lexer<'a> {
 
 impl<'a> Lexer<'a> {
     /// A lexer at the start of a text.
-    pub(super) fn new(text: &'a str) -> Self {
-        Self { text, at: 0, first_on_line: true, after_dot: false }
+    pub(crate) fn new(text: &'a str, dialect: Dialect) -> Self {
+        Self { text, dialect, at: 0, first_on_line: true, after_dot: false }
     }
 
     /// Leaves the rest unread: every later token is the end.
-    pub(super) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.at = self.text.len();
     }
 
     /// The next token; at the end of the text, the end again and again.
-    pub(super) fn token(&mut self) -> Token {
+    pub(crate) fn token(&mut self) -> Token {
         self.skip_blanks();
         let start = self.at;
         let first_on_line = std::mem::replace(&mut self.first_on_line, false);
@@ -65,12 +66,14 @@ impl<'a> Lexer<'a> {
         if self.at == self.text.len() {
             return Kind::End;
         }
+        if let Some(comment) = self.comment() {
+            return comment;
+        }
         let (length, kind) = match (self.byte(0), self.byte(1)) {
-            (b'-', b'-') => {
-                self.at = self.line_end();
-                return Kind::Comment;
+            (b'`', _) => return self.quoted_name(),
+            (b'\'', _) if self.dialect == Dialect::StructuredText => {
+                return self.quoted(b'\'', Kind::Text, Kind::UnclosedText);
             }
-            (b'`', _) => return self.quoted(b'`', Kind::QuotedName, Kind::UnclosedName),
             (b'"', _) => return self.quoted(b'"', Kind::Text, Kind::UnclosedText),
             (b'%', _) => return self.address(),
             (b'0'..=b'9', _) => return self.number(),
@@ -80,6 +83,8 @@ impl<'a> Lexer<'a> {
             (b'<', b'=') => (2, Kind::LessOrEqual),
             (b'>', b'=') => (2, Kind::GreaterOrEqual),
             (b'>', b'>') => (2, Kind::Jump),
+            (b'.', b'.') => (2, Kind::Range),
+            (b';', _) => (1, Kind::Semicolon),
             (b'(', _) => (1, Kind::LeftParenthesis),
             (b')', _) => (1, Kind::RightParenthesis),
             (b'[', _) => (1, Kind::LeftBracket),
@@ -105,8 +110,73 @@ impl<'a> Lexer<'a> {
         kind
     }
 
+    /// A comment or pragma, if one starts here. Comments in `(* *)` nest, as they may since the third edition of IEC 61131-3.
+    fn comment(&mut self) -> Option<Kind> {
+        let (first, second) = (self.byte(0), self.byte(1));
+        match self.dialect {
+            Dialect::Native if (first, second) == (b'-', b'-') => self.at = self.line_end(),
+            Dialect::StructuredText => match (first, second) {
+                (b'/', b'/') => self.at = self.line_end(),
+                (b'(', b'*') => return Some(self.long_comment(Some("(*"), "*)")),
+                (b'/', b'*') => return Some(self.long_comment(None, "*/")),
+                (b'{', _) => return Some(self.long_comment(None, "}")),
+                _ => return None,
+            },
+            Dialect::Native => return None,
+        }
+        Some(Kind::Comment)
+    }
+
+    fn long_comment(&mut self, opening: Option<&str>, closing: &str) -> Kind {
+        let bytes = self.text.as_bytes();
+        let stands = |at: usize, sign: &str| bytes.get(at..).is_some_and(|rest| rest.starts_with(sign.as_bytes()));
+        let mut at = self.at + opening.map_or(1, str::len);
+        let mut open = 1usize;
+        while at < bytes.len() {
+            if stands(at, closing) {
+                at += closing.len();
+                open -= 1;
+                if open == 0 {
+                    self.at = at;
+                    return Kind::Comment;
+                }
+            } else if let Some(opening) = opening.filter(|opening| stands(at, opening)) {
+                at += opening.len();
+                open += 1;
+            } else {
+                at += 1;
+            }
+        }
+        self.at = bytes.len();
+        Kind::UnclosedComment
+    }
+
     fn line_end(&self) -> usize {
         self.rest().find('\n').map_or(self.text.len(), |length| self.at + length)
+    }
+
+    /// A name in back quotes; touching a `#`, it is the type of a literal.
+    fn quoted_name(&mut self) -> Kind {
+        let kind = self.quoted(b'`', Kind::QuotedName, Kind::UnclosedName);
+        let starts_value = self.text[self.at..].strip_prefix('#').is_some_and(|value| value.starts_with(starts_value));
+        if kind == Kind::QuotedName && starts_value { self.after_type() } else { kind }
+    }
+
+    /// What stands behind the type of a literal, from the `#` on.
+    fn after_type(&mut self) -> Kind {
+        self.at += 1;
+        let rest = self.rest();
+        if rest.starts_with('`') {
+            self.quoted(b'`', Kind::Literal, Kind::UnclosedName);
+            return Kind::Literal;
+        }
+        if matches!(self.byte(0), b'+' | b'-') && self.byte(1).is_ascii_digit() {
+            self.at += 1;
+        } else if rest.starts_with(starts_name) {
+            self.at += rest.find(|character| !continues_name(character)).unwrap_or(rest.len());
+            return Kind::Literal;
+        }
+        self.number()
     }
 
     /// A quoted token. One that does not close ends with its line. In a title `$` takes the next character's
@@ -117,7 +187,9 @@ impl<'a> Lexer<'a> {
         while let Some(&byte) = bytes.get(at) {
             match byte {
                 b'\n' => break,
-                b'$' if quote == b'"' && matches!(bytes.get(at + 1), Some(b'"' | b'$')) => at += 1,
+                b'$' if quote != b'`' && bytes.get(at + 1).is_some_and(|next| *next == quote || *next == b'$') => {
+                    at += 1
+                }
                 _ if byte == quote => {
                     self.at = at + 1;
                     return closed;
@@ -171,7 +243,7 @@ impl<'a> Lexer<'a> {
             let meaningless = |character: char| {
                 !(character.is_whitespace()
                     || continues_name(character)
-                    || "`\"%:=<>()[]{}|/^,.+-*&".contains(character))
+                    || "`\"%:;=<>()[]{}|/^,.+-*&".contains(character))
             };
             let length = rest.find(|character| !meaningless(character)).unwrap_or(rest.len());
             self.at += length.max(rest.chars().next().map_or(1, char::len_utf8));
@@ -180,9 +252,13 @@ impl<'a> Lexer<'a> {
         let length = rest.find(|character| !continues_name(character)).unwrap_or(rest.len());
         self.at += length;
         if self.byte(0) == b'#' {
-            self.at += if matches!(self.byte(1), b'+' | b'-') && self.byte(2).is_ascii_digit() { 2 } else { 1 };
-            return self.number();
+            return self.after_type();
         }
-        keyword(&rest[..length]).map_or(Kind::Name, Kind::Keyword)
+        keyword(&rest[..length], self.dialect).map_or(Kind::Name, Kind::Keyword)
     }
+}
+
+/// Whether a value of an enumeration can start so.
+fn starts_value(character: char) -> bool {
+    character == '`' || starts_name(character)
 }
