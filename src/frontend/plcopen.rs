@@ -30,27 +30,9 @@ use crate::diagnostic::Code;
 use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
 use crate::source::{Source, Span};
 
-/// Whether a text is PLCopen XML: its outermost element is a `project`.
+/// Whether a text is XML, which no other format that is read is; what it lacks as a PLCopen project is then said.
 pub fn recognises(text: &str) -> bool {
-    let mut rest = text.trim_start();
-    // What may stand before the outermost element. Each step goes on behind what it has seen.
-    loop {
-        let end = if rest.starts_with("<?") {
-            "?>"
-        } else if rest.starts_with("<!--") {
-            "-->"
-        } else if rest.starts_with("<!") {
-            ">"
-        } else {
-            break;
-        };
-        match rest.split_once(end) {
-            Some((_, behind)) => rest = behind.trim_start(),
-            None => return true,
-        }
-    }
-    // Any other XML is this format too: no other that is read starts with a tag, and the diagnostic says what it lacks.
-    rest.starts_with('<')
+    text.trim_start().starts_with('<')
 }
 
 /// Reads PLCopen XML. After an error it goes on with the next element, and the program holds the others.

@@ -28,18 +28,20 @@ fn types_and_initial_values_are_read() {
         native_text(&text).split("\nrung").next().map(str::trim_end),
         Some(
             "type colour : (red, green := 4)\n\
+             \n\
              type point : struct\n  x : REAL := 1.5\n  n : INT\nend_struct\n\
+             \n\
              type level : INT\n\
              type row : array [0..9] of INT := [10(7)]\n\
              \n\
              program p\n\
              \n\
-             var   kept : DINT retain := -5\n\
-             const limit : TIME := T#2s\n\
-             var   lamp : BOOL at %QX0.1 := TRUE\n\
-             var   p : point := (n := 3)\n\
-             var   m : array [1..2, 0..1] of BOOL := [TRUE, 3(FALSE)]\n\
-             temp  t : WORD"
+             var    kept  : DINT := -5 retain\n\
+             const  limit : TIME := T#2s\n\
+             var    lamp  : BOOL at %QX0.1 := TRUE\n\
+             var    p     : point := (n := 3)\n\
+             var    m     : array [1..2, 0..1] of BOOL := [TRUE, 3(FALSE)]\n\
+             temp   t     : WORD"
         )
     );
 }
@@ -73,7 +75,7 @@ fn units_tasks_and_globals_are_read() {
          \n\
          function same : BOOL\n\
          \n\
-         input a : BOOL\n\
+         input  a : BOOL\n\
          \n\
          rung\n  a (same)\n\
          \n\
