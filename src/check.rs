@@ -23,19 +23,23 @@ mod declare;
 mod expression;
 mod fold;
 mod function;
+mod function_box;
 mod initial;
 mod jump;
 mod model;
 mod network;
 mod place;
+mod register;
 mod report;
 mod scope;
+mod size;
 pub(crate) mod spelling;
 mod statement;
 mod type_table;
 mod types;
 mod unit;
 mod usage;
+mod user_function;
 
 #[cfg(test)]
 mod tests;
@@ -50,7 +54,7 @@ pub use report::MOST_REPORTED;
 pub use type_table::MOST_ELEMENTS;
 pub use unit::MOST_INLINED;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
@@ -72,11 +76,14 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         report: Report::default(),
         types: TypeTable::default(),
         units: Vec::new(),
+        functions: unit::functions(program),
+        first_rungs: unit::first_rungs(program),
         scope: Scope::default(),
         registers: Resources::default(),
         direct: Direct::default(),
         too_deep: HashSet::new(),
         loops: 0,
+        turns: None,
         usage: Usage::default(),
         labels: Labels::default(),
     };
@@ -84,9 +91,11 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
-    checker.check_calls_end();
+    checker.check_usage();
     let (tasks, programs) = checker.check_tasks();
+    checker.check_sizes(&programs);
     checker.check_unused();
+    checker.check_unused_units();
     let Checker { report, scope, types, units, .. } = checker;
     let (runs, diagnostics) = report.finish();
     let checked = runs.then(|| {
@@ -113,6 +122,10 @@ struct Checker<'p> {
     types: TypeTable,
     /// The units as their callers see them.
     units: Vec<Signature>,
+    /// The functions among them, by their names.
+    functions: HashMap<String, UnitId>,
+    /// How many rungs stand before those of each unit.
+    first_rungs: Vec<usize>,
     scope: Scope,
     registers: Resources,
     direct: Direct,
@@ -120,6 +133,8 @@ struct Checker<'p> {
     too_deep: HashSet<(usize, usize)>,
     /// The FORs around what is being checked.
     loops: u32,
+    /// How often they repeat it; none where it does not run.
+    turns: Option<u64>,
     usage: Usage,
     labels: Labels,
 }

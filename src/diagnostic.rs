@@ -106,6 +106,7 @@ codes! {
     MisplacedJump = 511 Error "a jump where none can stand",
     NoMemoryHere = 512 Error "something that remembers, in a function",
     BadResource = 513 Error "a task, program instance or resource that cannot be",
+    MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
     DanglingConnection = 521 Error "a wire from an element that there is not",
     DuplicateId = 522 Error "two elements of one id",
     PowerCycle = 523 Error "power that runs in a circle",

@@ -1,7 +1,9 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
-use super::model::{Call, Callee, Circuit, Index, Input, Output, Place, Step, Type, UnitId, Wire};
+use super::function_box::{Boxable, Boxed};
+use super::model::{Call, Callee, Circuit, Input, Output, Place, Type, UnitId, Wire};
 use super::network::{Power, Walk};
+use super::register::is_constant;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
@@ -27,11 +29,13 @@ pub(super) struct Pins {
     name: String,
     inputs: Vec<Pin>,
     outputs: Vec<Pin>,
+    /// Whether the first output is the result of a function.
+    has_result: bool,
 }
 
 impl Pins {
     fn of_block(block: StandardBlock) -> Self {
-        let pin = |(place, pin): (usize, &crate::ladder::library::Pin)| Pin {
+        let pin = |(place, pin): (usize, &ladder::library::Pin)| Pin {
             name: pin.name.to_owned(),
             ty: Type::Elementary(pin.ty),
             range: pin.range,
@@ -42,12 +46,19 @@ impl Pins {
             name: block.name().to_owned(),
             inputs: block.inputs().iter().enumerate().map(pin).collect(),
             outputs: block.outputs().iter().enumerate().map(pin).collect(),
+            has_result: false,
         }
     }
 
     fn find<'a>(pins: &'a [Pin], name: &str) -> Option<&'a Pin> {
         let wanted = ladder::key(name);
         pins.iter().find(|pin| ladder::key(&pin.name) == wanted)
+    }
+
+    /// The output of that name; the result of a function is its `OUT`, too.
+    fn output(&self, name: &str) -> Option<&Pin> {
+        let result = || self.outputs.first().filter(|_| self.has_result && name.eq_ignore_ascii_case("OUT"));
+        Self::find(&self.outputs, name).or_else(result)
     }
 
     fn list<'a>(pins: impl Iterator<Item = &'a Pin>) -> String {
@@ -84,7 +95,10 @@ enum Target<'a> {
 impl Checker<'_> {
     /// A call; `in_circuit` if there is power on its left. Calls nest in circuits at pins, so that what is not needed while the
     /// arguments are checked has functions of its own.
-    pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Call> {
+    pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Boxed> {
+        if let Some(Boxable::Standard(function)) = self.boxed_function(call) {
+            return self.standard_box(function, call, walk);
+        }
         let Some(called) = self.called_block(call, span, walk) else {
             self.arguments_of_unknown(call, walk);
             return None;
@@ -95,6 +109,9 @@ impl Checker<'_> {
 
     /// What is called, as far as it can be made out.
     fn called_block(&mut self, call: &BlockCall, span: Span, walk: &mut Walk) -> Option<Box<Called>> {
+        if let Some(Boxable::User(unit)) = self.boxed_function(call) {
+            return Some(Box::new(Called { pins: self.pins_of_unit(unit), callee: Some(Callee::UserFunction(unit)) }));
+        }
         let named = call.type_name.as_ref().and_then(|name| self.block_named(name));
         let instance = self.instance(call);
         let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named));
@@ -131,23 +148,37 @@ impl Checker<'_> {
         in_circuit: bool,
         called: Box<Called>,
         wired: Box<Wired>,
-    ) -> Option<Call> {
+    ) -> Option<Boxed> {
         let Called { pins, callee } = *called;
         let Wired { enable, inputs, references, outputs, seen } = *wired;
         self.check_missing(&pins, &seen, call);
         let is_wired = |pin: &Pin| seen.iter().any(|(name, _)| *name == ladder::key(&pin.name));
         let is_bool = |pin: &&Pin| pin.ty == Type::Elementary(Elementary::Bool);
+        let is_function = matches!(callee, Some(Callee::UserFunction(_)));
         let first = pins.inputs.iter().filter(|pin| pin.takes == Takes::Value).find(is_bool);
-        let power_input = first.filter(|pin| in_circuit && !is_wired(pin)).map(|pin| pin.place);
+        let power_input = first.filter(|pin| in_circuit && !is_function && !is_wired(pin)).map(|pin| pin.place);
         let power_output = match &call.power_output {
             Some(name) => self.power_output(&pins, name)?,
+            None if is_function => Output::Eno,
             None => pins.outputs.iter().find(is_bool).map_or(Output::Eno, |pin| Output::Pin(pin.place)),
         };
         let callee = callee?;
-        if let Callee::Unit(unit, _) = callee {
+        if let Callee::Unit(unit, _) | Callee::UserFunction(unit) = callee {
             self.note_unit_call(unit, span);
         }
-        Some(Call { callee, enable, power_input, inputs, references, outputs, power_output })
+        if !is_function && self.in_function() {
+            let message = format!("a function remembers nothing, and {} does", types::with_article(&pins.name));
+            let problem = Diagnostic::new(Code::NoMemoryHere, span, message);
+            self.report.push(problem.hint("declare a function block instead, which has instances"));
+            return None;
+        }
+        if let Callee::Standard(block, _) = callee
+            && !self.check_registers_of(block, call, &inputs, &references)
+        {
+            return None;
+        }
+        let call = Call { callee, enable, power_input, inputs, references, outputs, power_output };
+        Some(Boxed::Call(Box::new(call)))
     }
 
     /// The place that is called.
@@ -158,14 +189,10 @@ impl Checker<'_> {
             })?;
         }
         let (place, ty) = self.place(&call.instance)?;
-        let computed = |step: &Step| match step {
-            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
-            _ => false,
-        };
-        if self.loops == 0 && place.path.iter().any(computed) {
+        if !is_constant(&place) {
             let message = "an instance cannot be chosen while the program runs";
             let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
-            self.report.push(problem.hint("its index must be a constant, or depend on the variable of a FOR alone"));
+            self.report.push(problem.hint("its index must be a constant; write a call for each"));
             return None;
         }
         Some((place, ty))
@@ -213,7 +240,8 @@ impl Checker<'_> {
         };
         let mut inputs = pins(&signature.inputs, Takes::Value);
         inputs.extend(pins(&signature.references, Takes::Reference));
-        Pins { name: self.type_name(Type::Unit(unit)), inputs, outputs: pins(&signature.outputs, Takes::Value) }
+        let (name, outputs) = (self.type_name(Type::Unit(unit)), pins(&signature.outputs, Takes::Value));
+        Pins { name, inputs, outputs, has_result: self.has_result(unit) }
     }
 
     /// What is wrong in the arguments whatever the block.
@@ -268,7 +296,7 @@ impl Checker<'_> {
     ) -> Option<Target<'a>> {
         let name = &argument.pin.text;
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
-        let (input, output) = (Pins::find(&pins.inputs, name), Pins::find(&pins.outputs, name));
+        let (input, output) = (Pins::find(&pins.inputs, name), pins.output(name));
         let found = match (is_output, input, output) {
             (false, Some(pin), _) => Target::Input(pin),
             (true, _, Some(pin)) => Target::Output(pin),
@@ -286,7 +314,10 @@ impl Checker<'_> {
                 return None;
             }
         };
-        let key = ladder::key(name);
+        let key = match found {
+            Target::Input(pin) | Target::Output(pin) => ladder::key(&pin.name),
+            Target::Enable | Target::Enabled => ladder::key(name),
+        };
         if let Some((_, first)) = seen.iter().find(|(other, _)| *other == key) {
             let problem = Diagnostic::new(Code::DuplicatePin, argument.pin.span, format!("`{name}` is wired twice"));
             self.report.push(problem.related(*first, "wired first here"));
@@ -312,9 +343,7 @@ impl Checker<'_> {
         match (wire, ty) {
             (ladder::Wire::Value(value), Type::Elementary(ty)) => self.value(value, ty).map(Wire::Value),
             (ladder::Wire::Value(value), _) => {
-                let message = format!("{} is handed over by reference only", types::with_article(&self.type_name(ty)));
-                let problem = Diagnostic::new(Code::TypeMismatch, value.span, message);
-                self.report.push(problem.hint("declare the pin as `inout`"));
+                self.by_reference_only(ty, value.span);
                 None
             }
             (ladder::Wire::Circuit(circuit), _) => {
@@ -361,56 +390,81 @@ impl Checker<'_> {
 
     /// The variable that a reference stands for.
     fn reference_pin(&mut self, pin: &Pin, wire: &ladder::Wire, walk: &mut Walk) -> Option<Place> {
-        let ladder::Wire::Value(value) = wire else {
-            if let ladder::Wire::Circuit(circuit) = wire {
+        match wire {
+            ladder::Wire::Value(value) => self.by_reference(&pin.name, pin.ty, value),
+            ladder::Wire::Circuit(circuit) => {
                 self.pin_circuit(circuit, walk);
+                self.no_variable(&pin.name, circuit.span);
+                None
             }
-            return None;
-        };
+            ladder::Wire::Output(_) => None,
+        }
+    }
+
+    /// The variable that something of a type by this name stands for.
+    pub(super) fn by_reference(&mut self, name: &str, wanted: Type, value: &ladder::Expression) -> Option<Place> {
         let ladder::ExpressionKind::Read(reference) = &value.kind else {
             self.operand(value);
-            let message = format!("`{}` takes a variable, not a value", pin.name);
-            self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
+            self.no_variable(name, value.span);
             return None;
         };
         let (place, ty) = self.written(reference)?;
-        if ty != pin.ty || place.bit.is_some() {
-            let [wants, found] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
+        if ty != wanted || place.bit.is_some() {
+            let [wants, found] = [wanted, ty].map(|ty| types::with_article(&self.type_name(ty)));
             let found = if place.bit.is_some() { "a single bit".to_owned() } else { found };
-            let message = format!("`{}` takes {wants}, and this is {found}", pin.name);
+            let message = format!("`{name}` takes {wants}, and this is {found}");
             self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
             return None;
         }
         Some(place)
     }
 
+    fn no_variable(&mut self, name: &str, span: Span) {
+        let message = format!("`{name}` takes a variable, not a value");
+        self.report.push(Diagnostic::new(Code::TypeMismatch, span, message));
+    }
+
+    /// Reports a whole array, structure or instance at a pin that takes values.
+    pub(super) fn by_reference_only(&mut self, ty: Type, span: Span) {
+        let message = format!("{} is handed over by reference only", types::with_article(&self.type_name(ty)));
+        self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).hint("declare the pin as `inout`"));
+    }
+
     pub(super) fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
         let around = std::mem::replace(&mut walk.in_pin, true);
+        let loops = std::mem::take(&mut self.loops);
         let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
         walk.in_pin = around;
+        self.loops = loops;
         checked
     }
 
     /// Where an output goes.
     fn output(&mut self, pin: &Pin, target: &ladder::Reference) -> Option<Place> {
         let (place, ty) = self.write(target)?;
-        let ty = Type::Elementary(ty);
-        if ty != pin.ty {
-            let [gives, takes] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
-            let message = format!("`{}` gives {gives}, and this is {takes}", pin.name);
-            let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
-            self.report.push(problem.hint(format!(
-                "an output goes to a variable of its own type; declare one of {}",
-                self.type_name(pin.ty)
-            )));
+        if Type::Elementary(ty) != pin.ty {
+            self.wrong_target(&pin.name, pin.ty, Type::Elementary(ty), target.span);
             return None;
         }
         Some(place)
     }
 
+    /// Reports an output that goes to a variable of another type.
+    pub(super) fn wrong_target(&mut self, output: &str, gives: Type, takes: Type, span: Span) {
+        let [given, taken] = [gives, takes].map(|ty| types::with_article(&self.type_name(ty)));
+        let problem =
+            Diagnostic::new(Code::TypeMismatch, span, format!("`{output}` gives {given}, and this is {taken}"));
+        self.report.push(
+            problem.hint(format!(
+                "an output goes to a variable of its own type; declare one of {}",
+                self.type_name(gives)
+            )),
+        );
+    }
+
     fn power_output(&mut self, pins: &Pins, name: &Name) -> Option<Output> {
         let bools = || Pins::list(pins.outputs.iter().filter(|pin| pin.ty == Type::Elementary(Elementary::Bool)));
-        let problem = match Pins::find(&pins.outputs, &name.text) {
+        let problem = match pins.output(&name.text) {
             Some(pin) if pin.ty == Type::Elementary(Elementary::Bool) => return Some(Output::Pin(pin.place)),
             None if name.text.eq_ignore_ascii_case("ENO") => return Some(Output::Eno),
             Some(pin) => {

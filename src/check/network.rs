@@ -7,13 +7,14 @@
 use std::collections::HashMap;
 
 use super::expression::constant;
+use super::function_box::Boxed;
 use super::jump::Labels;
 use super::model::{self, NodeId, Place, UnitId};
 use super::report::clipped;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ContactKind, ElementKind, Name, Reference, Rung};
+use crate::ladder::{self, CoilKind, ContactKind, ElementKind, Name, Reference, Rung};
 use crate::source::Span;
 
 /// What is known of the power at a point.
@@ -39,7 +40,9 @@ impl Power {
 
 /// What is known of the rung that is walked.
 pub(super) struct Walk {
-    /// Its place among all rungs.
+    /// Its unit.
+    pub(super) unit: usize,
+    /// Its place among all rungs of that.
     pub(super) rung: usize,
     /// Whether it runs.
     pub(super) enabled: bool,
@@ -54,6 +57,8 @@ pub(super) struct Walk {
     barrier: Option<Span>,
     /// Whether this is a circuit at a pin.
     pub(super) in_pin: bool,
+    /// Whether this is only one of the ways that an IF or CASE may take.
+    pub(super) conditional: bool,
 }
 
 struct Node {
@@ -68,8 +73,9 @@ struct Node {
 }
 
 impl Walk {
-    fn new(rung: usize, enabled: bool) -> Self {
+    fn new(unit: usize, rung: usize, enabled: bool) -> Self {
         Self {
+            unit,
             rung,
             enabled,
             nodes: HashMap::new(),
@@ -78,6 +84,7 @@ impl Walk {
             conducts: false,
             barrier: None,
             in_pin: false,
+            conditional: false,
         }
     }
 
@@ -109,11 +116,12 @@ impl<'p> Checker<'p> {
                 self.report.push(problem.related(first, "the first is here"));
             }
             if !self.too_deep.contains(&(unit, index)) {
-                let checked = self.rung(rung, index);
+                self.turns = rung.enabled.then_some(1);
+                let checked = self.rung(rung, unit, index);
+                self.turns = None;
                 rungs.extend(rung.enabled.then_some(checked));
             }
         }
-        self.check_usage();
         rungs
     }
 
@@ -122,8 +130,8 @@ impl<'p> Checker<'p> {
         &self.program.units[self.scope.unit().map_or(0, UnitId::index)]
     }
 
-    fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
-        let mut walk = Walk::new(index, rung.enabled);
+    fn rung(&mut self, rung: &Rung, unit: usize, index: usize) -> model::Rung {
+        let mut walk = Walk::new(unit, index, rung.enabled);
         let (circuit, _) = self.circuit(&rung.circuit, Power::Maybe, &mut walk);
         let mut unused: Vec<&Node> = walk.nodes.values().filter(|node| node.used.is_none()).collect();
         unused.sort_by_key(|node| node.id.0);
@@ -132,22 +140,22 @@ impl<'p> Checker<'p> {
             self.report.push(problem.hint("its name at the start of a later branch continues from it"));
         }
         if !walk.active {
-            let message = format!("{} has no coil, block or assignment", self.rung_name(index));
+            let message = format!("{} has no coil, block or assignment", self.rung_name(unit, index));
             self.report.push(Diagnostic::new(Code::EmptyRung, rung.span, message));
         } else if let (false, Some(barrier)) = (walk.conducts, walk.barrier) {
-            let message = format!("{} can never conduct: no power passes here", self.rung_name(index));
+            let message = format!("{} can never conduct: no power passes here", self.rung_name(unit, index));
             let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
             self.report.push(problem.hint("`rung off` keeps a rung from running"));
         }
-        let label = rung.name.as_ref().map_or_else(|| self.rung_name(index), |name| name.text.clone());
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(unit, index), |name| name.text.clone());
         model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
     }
 
-    /// A rung by its name or else its number, for messages.
-    pub(super) fn rung_name(&self, index: usize) -> String {
-        match self.drawn().rungs.get(index).and_then(|rung| rung.name.as_ref()) {
+    /// A rung by its name or else its number among all rungs of the source, for messages.
+    pub(super) fn rung_name(&self, unit: usize, index: usize) -> String {
+        match self.program.units[unit].rungs.get(index).and_then(|rung| rung.name.as_ref()) {
             Some(name) => format!("rung {}", clipped(&name.text)),
-            None => format!("rung {}", index + 1),
+            None => format!("rung {}", self.first_rungs[unit] + index + 1),
         }
     }
 
@@ -218,11 +226,12 @@ impl<'p> Checker<'p> {
 
     /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        self.weigh(1);
         match &element.kind {
             ElementKind::Block(call) => {
                 walk.active = true;
                 let call = self.call(call, element.span, true, walk);
-                (call.map(model::Element::Call), Power::Maybe)
+                (call.map(Boxed::element), Power::Maybe)
             }
             ElementKind::Parallel(circuit) => {
                 let (circuit, right) = self.circuit(circuit, left, walk);
@@ -240,6 +249,8 @@ impl<'p> Checker<'p> {
     ) -> (Option<model::Element>, Power) {
         match &element.kind {
             ElementKind::Contact { kind, operand } => {
+                let is_edge = matches!(kind, ContactKind::Rising | ContactKind::Falling);
+                self.check_edge(is_edge, "a contact", element.span);
                 let operand = self.value(operand, Elementary::Bool);
                 let blocks = operand.as_ref().and_then(model::Expression::constant).is_some_and(|value| {
                     // An edge of what never is so does not come either.
@@ -258,6 +269,7 @@ impl<'p> Checker<'p> {
                 (condition.map(model::Element::Condition), right)
             }
             ElementKind::Coil { kind, target } => {
+                self.check_edge(matches!(kind, CoilKind::Rising | CoilKind::Falling), "a coil", element.span);
                 walk.effect(left);
                 let target = self.coil_target(target);
                 if let Some(target) = &target {
@@ -283,6 +295,15 @@ impl<'p> Checker<'p> {
             }
             ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
             ElementKind::Block(_) | ElementKind::Parallel(_) => (None, left),
+        }
+    }
+
+    /// Reports an edge in a function, which has no memory for it.
+    fn check_edge(&mut self, is_edge: bool, what: &str, span: Span) {
+        if is_edge && self.in_function() {
+            let message = format!("a function remembers nothing, and {what} for an edge does");
+            let problem = Diagnostic::new(Code::NoMemoryHere, span, message);
+            self.report.push(problem.hint("declare a function block instead, which has instances"));
         }
     }
 
