@@ -8,8 +8,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Literal,
-    Name, Wire,
+    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
+    Literal, Name, Wire,
 };
 use crate::source::Span;
 
@@ -220,18 +220,22 @@ impl<'v> Plan<'v> {
         }
         // Wires from what has other uses too.
         for (set, (feeds, users)) in sets.iter().enumerate().filter(|(_, (feeds, _))| feeds.len() > 1) {
-            let last = feeds.iter().filter_map(|feed| if let Feed::Vertex(vertex) = feed { Some(*vertex) } else { None });
+            let last =
+                feeds.iter().filter_map(|feed| if let Feed::Vertex(vertex) = feed { Some(*vertex) } else { None });
             let last = last.max().unwrap_or(0);
             let first_user = users.iter().map(|(user, _)| *user).min().unwrap_or(0);
             for feed in *feeds {
                 let from = match feed {
                     Feed::Rail => Point::Rail,
-                    Feed::Vertex(vertex) if of_vertex.get(vertex).is_some_and(|sets| sets.len() > 1) => Point::Behind(*vertex),
+                    Feed::Vertex(vertex) if of_vertex.get(vertex).is_some_and(|sets| sets.len() > 1) => {
+                        Point::Behind(*vertex)
+                    }
                     Feed::Vertex(_) => continue,
                 };
                 let owner = owners[set].unwrap_or_else(|| region_of.get(&first_user).copied().unwrap_or(0));
                 let y = if let Feed::Vertex(vertex) = feed { self.vertices[*vertex].y } else { i64::MIN };
-                let edge = Edge { from, to: Point::Net(set), items: Vec::new(), first: last, last, depth: 0, y, pure: true };
+                let edge =
+                    Edge { from, to: Point::Net(set), items: Vec::new(), first: last, last, depth: 0, y, pure: true };
                 *self.uses.entry(from).or_default() += 1;
                 self.edges.entry(owner).or_default().push(edge);
             }
@@ -356,7 +360,8 @@ impl<'v> Plan<'v> {
                     continue;
                 }
             }
-            let depth = places.iter().filter_map(|place| old[*place].as_ref()).map(|edge| edge.depth).max().unwrap_or(0);
+            let depth =
+                places.iter().filter_map(|place| old[*place].as_ref()).map(|edge| edge.depth).max().unwrap_or(0);
             if places.len() > 1 && depth.max(behind.depth) + 1 > MOST_NESTED {
                 continue;
             }
