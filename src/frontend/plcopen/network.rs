@@ -71,6 +71,9 @@ enum Point {
     End,
 }
 
+/// Who takes power: a vertex on its left, or at one of its pins.
+type User = (usize, Option<usize>);
+
 /// Where a vertex stands: in the rung (0), or in the circuit of a pin.
 type Region = usize;
 
@@ -141,9 +144,9 @@ impl<'v> Plan<'v> {
     /// Finds the points, and the region of every edge.
     fn lay(&mut self) {
         // Sets of feeds, each once, with those who take their power.
-        let mut sets: Vec<(&'v [Feed], Vec<(usize, Option<usize>)>)> = Vec::new();
+        let mut sets: Vec<(&'v [Feed], Vec<User>)> = Vec::new();
         let mut known: HashMap<Vec<Feed>, usize> = HashMap::new();
-        let mut note = |feeds: &'v [Feed], user: (usize, Option<usize>)| {
+        let mut note = |feeds: &'v [Feed], user: User| {
             let set = *known.entry(sorted(feeds)).or_insert_with(|| {
                 sets.push((feeds, Vec::new()));
                 sets.len() - 1
@@ -342,7 +345,7 @@ impl<'v> Plan<'v> {
         // From the left, so that a merged edge is found under the place of its left part.
         let mut moved: Vec<usize> = (0..old.len()).collect();
         for (_, start, ends) in order {
-            if ends.len() > 1 && (adjacent || !ends.iter().all(|end| self.from_rail(&old, &moved, *end))) {
+            if ends.len() > 1 && (adjacent || !ends.iter().all(|end| self.starts_at_rail(&old, &moved, *end))) {
                 continue;
             }
             let places: Vec<usize> = ends.iter().map(|end| resolve(&moved, *end)).collect();
@@ -386,7 +389,7 @@ impl<'v> Plan<'v> {
         changed
     }
 
-    fn from_rail(&self, old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
+    fn starts_at_rail(&self, old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
         old[resolve(moved, place)].as_ref().is_some_and(|edge| edge.from == Point::Rail)
     }
 

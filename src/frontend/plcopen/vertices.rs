@@ -169,9 +169,11 @@ impl<'d, 'r> Builder<'d, 'r> {
             && !enabled
             && uses.iter().all(|used| Some(used.output) != eno && Some(used.output) == result)
             && block.inputs.iter().any(|input| !input.sources.is_empty())
-            && block.inputs.iter().enumerate().all(|(pin, input)| {
-                !takes_power(self.scope, block, pin) && !(input.in_out && !input.sources.is_empty())
-            })
+            && block
+                .inputs
+                .iter()
+                .enumerate()
+                .all(|(pin, input)| !takes_power(self.scope, block, pin) && (!input.in_out || input.sources.is_empty()))
     }
 
     fn main_output(&self, block: &Block, uses: &[Use]) -> Option<usize> {
