@@ -72,6 +72,8 @@ codes! {
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
     UnboundedLoop = 208 Error "a loop without a constant number of times",
+    NotSupported = 209 Error "something that Rung has not",
+    CannotConvert = 210 Error "something that the other format has not",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
