@@ -5,9 +5,12 @@
 
 mod declarations;
 mod rungs;
+mod statements;
+mod types;
 mod words;
 
-use crate::ladder::{Comment, Program};
+use crate::ladder::{Comment, Program, Unit, UnitKind};
+use crate::source::Span;
 use unicode_width::UnicodeWidthStr;
 
 /// Columns that a line should not go beyond.
@@ -17,27 +20,64 @@ const LINE_WIDTH: usize = 100;
 /// spell, is printed with a quote or a blank there.
 pub fn print(program: &Program) -> String {
     let mut page = Page { comments: &program.comments, ..Page::default() };
-    page.flush(program.name.span.start, 0);
-    page.line(0);
-    page.push("program ");
-    page.push(&words::name(&program.name.text));
-    let unit = &program.units[0];
-    let first_rung = unit.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
-    let first = unit.variables.first().map_or(first_rung, |variable| variable.name.span.start);
-    page.flush_trailing(first);
-    declarations::print(&mut page, &unit.variables, first_rung);
-    let next_starts = unit.rungs.iter().skip(1).map(|rung| rung.span.start).chain([u32::MAX]);
-    for (rung, next) in unit.rungs.iter().zip(next_starts) {
-        page.blank_line();
-        rungs::print(&mut page, rung);
-        page.flush_trailing(next);
+    types::print(&mut page, &program.types);
+    if let Some(registers) = &program.registers {
+        page.item(registers.span.start, true);
+        page.push(&format!("registers({})", words::settings(&registers.settings)));
     }
+    let first_instance = program.instances.first().map_or(u32::MAX, |instance| instance.name.span.start);
+    let first_unit = program.units.first().map_or(first_instance, start);
+    let first_task = program.tasks.first().map_or(first_unit, |task| task.name.span.start);
+    declarations::print(&mut page, &program.globals, Some("global "), first_task);
+    for (index, task) in program.tasks.iter().enumerate() {
+        page.item(task.name.span.start, index == 0);
+        page.push(&words::task(task));
+    }
+    let next_starts = program.units.iter().skip(1).map(start).chain([first_instance]);
+    for (unit, next) in program.units.iter().zip(next_starts) {
+        print_unit(&mut page, unit, next);
+    }
+    for (index, instance) in program.instances.iter().enumerate() {
+        page.item(instance.name.span.start, index == 0);
+        let head = format!("program {} : {}", words::name(&instance.name.text), words::name(&instance.program.text));
+        page.push(&head);
+        page.push(&words::with_task(instance.task.as_ref()));
+    }
+    page.flush_trailing(u32::MAX);
     if !page.comments.is_empty() {
         page.blank_line();
         page.flush_all();
     }
     page.line(0);
     page.text
+}
+
+/// Where a unit starts: one without a header with what is first in it.
+fn start(unit: &Unit) -> u32 {
+    if unit.name.span != Span::default() {
+        return unit.name.span.start;
+    }
+    let first_rung = unit.rungs.first().map_or(0, |rung| rung.span.start);
+    unit.variables.first().map_or(first_rung, |variable| variable.name.span.start)
+}
+
+/// Prints a unit; `next` is where the next one starts.
+fn print_unit(page: &mut Page<'_>, unit: &Unit, next: u32) {
+    page.item(unit.name.span.start, true);
+    let name = words::name(&unit.name.text);
+    page.push(&match &unit.kind {
+        UnitKind::Program { task } => format!("program {name}{}", words::with_task(task.as_ref())),
+        UnitKind::FunctionBlock => format!("function_block {name}"),
+        UnitKind::Function { result: None } => format!("function {name}"),
+        UnitKind::Function { result: Some(ty) } => format!("function {name} : {}", words::type_reference(ty)),
+    });
+    let first_rung = unit.rungs.first().map_or(next, |rung| rung.span.start);
+    declarations::print(page, &unit.variables, None, first_rung);
+    for rung in &unit.rungs {
+        page.flush_trailing(rung.span.start);
+        page.blank_line();
+        rungs::print(page, rung);
+    }
 }
 
 /// The text so far, and the comments that are still to be put into it.
@@ -76,6 +116,16 @@ impl<'a> Page<'a> {
     fn blank_line(&mut self) {
         self.line(0);
         self.ended = true;
+    }
+
+    /// Starts the line of a declaration with the comments before it, and with an empty line before those.
+    fn item(&mut self, place: u32, apart: bool) {
+        self.flush_trailing(place);
+        if apart || self.has_comment_before(place) {
+            self.blank_line();
+        }
+        self.flush(place, 0);
+        self.line(0);
     }
 
     /// Puts text at the end of the line, whatever its width.

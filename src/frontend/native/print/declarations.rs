@@ -22,8 +22,10 @@ struct Line<'a> {
     comment: Option<&'a Comment>,
 }
 
-/// Prints the declarations and the comments before and behind them; `end` is where the rungs start.
-pub(super) fn print(page: &mut Page<'_>, variables: &[Variable], end: u32) {
+/// Prints the declarations and the comments before and behind them, all behind one word; without one each has that of its
+/// class. What follows them starts at `end`.
+pub(super) fn print(page: &mut Page<'_>, variables: &[Variable], word: Option<&str>, end: u32) {
+    page.flush_trailing(variables.first().map_or(end, |variable| variable.name.span.start));
     let mut lines = Vec::new();
     let mut rest = variables;
     let mut separate = true;
@@ -37,10 +39,10 @@ pub(super) fn print(page: &mut Page<'_>, variables: &[Variable], end: u32) {
             page.blank_line();
         }
         separate = false;
-        let names = 1 + together(page, first, after);
+        let names = 1 + together(page, word, first, after);
         let (group, others) = rest.split_at(names);
         rest = others;
-        let mut line = Line { names: head(first.class), clauses: clauses(first), comment: None };
+        let mut line = Line { names: head(word, first.class), clauses: clauses(first), comment: None };
         let list: Vec<_> = group.iter().map(|variable| words::name(&variable.name.text)).collect();
         line.names.push_str(&list.join(", "));
         let next = rest.first().map_or(end, |variable| variable.name.span.start);
@@ -53,7 +55,7 @@ pub(super) fn print(page: &mut Page<'_>, variables: &[Variable], end: u32) {
 }
 
 /// How many of the next variables were declared with the first, can stay with it, and have room on its line.
-fn together(page: &Page<'_>, first: &Variable, after: &[Variable]) -> usize {
+fn together(page: &Page<'_>, word: Option<&str>, first: &Variable, after: &[Variable]) -> usize {
     let same = |next: &&Variable| {
         first.span != Span::default()
             && next.span == first.span
@@ -65,7 +67,7 @@ fn together(page: &Page<'_>, first: &Variable, after: &[Variable]) -> usize {
             && !page.has_comment_before(next.name.span.start)
     };
     let others = after.iter().take_while(same);
-    let mut width = head(first.class).len() + words::name(&first.name.text).width() + clauses(first).width();
+    let mut width = head(word, first.class).len() + words::name(&first.name.text).width() + clauses(first).width();
     let room = |next: &&Variable| {
         width += 2 + words::name(&next.name.text).width();
         width <= LINE_WIDTH
@@ -73,7 +75,11 @@ fn together(page: &Page<'_>, first: &Variable, after: &[Variable]) -> usize {
     others.take_while(room).count()
 }
 
-fn head(class: VariableClass) -> String {
+fn head(word: Option<&str>, class: VariableClass) -> String {
+    if let Some(word) = word {
+        let constant = if class == VariableClass::Constant { "const " } else { "" };
+        return format!("{word}{constant}");
+    }
     let keyword = match class {
         VariableClass::Input => "input",
         VariableClass::Output => "output",
@@ -89,7 +95,7 @@ fn clauses(variable: &Variable) -> String {
     let mut text = String::new();
     if let Some(ty) = &variable.ty {
         text.push_str(" : ");
-        text.push_str(&words::name(&ty.name.text));
+        text.push_str(&words::type_reference(ty));
     }
     if let Some(address) = &variable.address {
         text.push_str(" at ");

@@ -3,9 +3,8 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::words;
-use super::{LINE_WIDTH, Page};
-use crate::ladder::{BlockCall, Branch, Circuit, Element, ElementKind, Rung, Wire};
+use super::{LINE_WIDTH, Page, statements, words};
+use crate::ladder::{BlockCall, Branch, Circuit, Element, ElementKind, Rung, Statement, Wire};
 
 /// Where bodies stand; the bars of a rung's own branches stand to the left of it.
 const BODY: usize = 2;
@@ -13,7 +12,7 @@ const BODY: usize = 2;
 /// The deepest indentation, so that deep circuits still have room on their lines.
 const DEEPEST: usize = 60;
 
-const fn deeper(indent: usize) -> usize {
+pub(super) const fn deeper(indent: usize) -> usize {
     if indent + 2 > DEEPEST { DEEPEST } else { indent + 2 }
 }
 
@@ -73,12 +72,16 @@ fn print_branch(page: &mut Page<'_>, branch: &Branch, indent: usize) {
 }
 
 fn print_element(page: &mut Page<'_>, element: &Element, indent: usize) {
-    if let Some(word) = words::simple_element(element) {
+    // A comment within has to end a line within, if there is more than one line at all.
+    let whole = !page.has_comment_before(element.span.end);
+    let statements = matches!(element.kind, ElementKind::Statements(_));
+    if (whole || !statements)
+        && let Some(word) = words::simple_element(element)
+    {
         page.word(&word, indent);
         return;
     }
-    // A comment within has to end a line within.
-    if !page.has_comment_before(element.span.end)
+    if whole
         && let Some(word) = words::short_element(element)
         && indent + word.width() <= LINE_WIDTH
     {
@@ -89,6 +92,7 @@ fn print_element(page: &mut Page<'_>, element: &Element, indent: usize) {
     match &element.kind {
         ElementKind::Block(call) => print_block(page, call, element.span.end, indent),
         ElementKind::Parallel(circuit) => print_brackets(page, circuit, indent),
+        ElementKind::Statements(list) => print_statements(page, list, element.span.end, indent),
         _ => {}
     }
 }
@@ -109,6 +113,21 @@ fn print_brackets(page: &mut Page<'_>, circuit: &Circuit, indent: usize) {
     page.flush(circuit.span.end.saturating_sub(1), deeper(indent));
     page.line(indent);
     page.push("]");
+}
+
+/// ```text
+/// { IF a THEN
+///     b := 1;
+///   END_IF;
+/// }
+/// ```
+fn print_statements(page: &mut Page<'_>, list: &[Statement], end: u32, indent: usize) {
+    let closing = end.saturating_sub(1);
+    page.gutter("{");
+    statements::print(page, list, closing, deeper(indent));
+    page.flush(closing, deeper(indent));
+    page.line(indent);
+    page.push("}");
 }
 
 /// ```text

@@ -3,11 +3,13 @@
 
 use std::borrow::Cow;
 
+use crate::elementary::Elementary;
 use crate::frontend::text::literals::UNITS;
 use crate::frontend::text::token::is_plain_name;
 use crate::ladder::{
-    Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression,
-    ExpressionKind, Literal, Reference, Root, Step, UnaryOperator, Wire,
+    Argument, BinaryOperator, BlockCall, Branch, CaseLabel, Circuit, CoilKind, ContactKind, Element, ElementKind,
+    Expression, ExpressionKind, Literal, Name, Reference, Root, Setting, Statement, StatementKind, Step, Task,
+    TypeReference, UnaryOperator, Wire,
 };
 
 /// A name, in back quotes if it needs them.
@@ -106,7 +108,9 @@ fn push_expression(text: &mut String, expression: &Expression) {
                 match (&item.repeat, &item.value) {
                     (None, Some(value)) => push_expression(text, value),
                     (repeat, value) => {
-                        repeat.iter().for_each(|repeat| push_expression(text, repeat));
+                        // A name before the parenthesis would be that of a function.
+                        let bare = |repeat: &Expression| matches!(repeat.kind, ExpressionKind::Literal(_));
+                        repeat.iter().for_each(|repeat| push_operand(text, repeat, !bare(repeat)));
                         text.push('(');
                         value.iter().for_each(|value| push_expression(text, value));
                         text.push(')');
@@ -179,7 +183,12 @@ fn literal(literal: &Literal) -> String {
         ),
         Literal::Real { value, ty } => typed(ty, real(*value)),
         Literal::Time(nanoseconds) => duration(*nanoseconds),
-        Literal::Enumerated { ty, value } => format!("{}#{}", name(&ty.text), name(&value.text)),
+        Literal::Enumerated { ty, value } => {
+            // Bare, the name of an elementary type would begin another kind of literal.
+            let elementary = Elementary::from_name(&ty.text).is_some();
+            let ty = if elementary { format!("`{}`", ty.text).into() } else { name(&ty.text) };
+            format!("{ty}#{}", name(&value.text))
+        }
     }
 }
 
@@ -217,9 +226,100 @@ pub(super) fn is_bare_feed(branch: &Branch) -> bool {
     branch.from.is_none() && branch.elements.is_empty() && branch.to.is_some()
 }
 
+/// `array [0..9, 1..3] of INT`
+pub(super) fn type_reference(ty: &TypeReference) -> String {
+    let name = name(&ty.name.text);
+    if ty.dimensions.is_empty() {
+        return name.into_owned();
+    }
+    let dimensions: Vec<String> = ty
+        .dimensions
+        .iter()
+        .map(|dimension| format!("{}..{}", expression(&dimension.first), expression(&dimension.last)))
+        .collect();
+    format!("array [{}] of {name}", dimensions.join(", "))
+}
+
+/// ` := value`, if there is one.
+pub(super) fn initial(value: Option<&Expression>) -> String {
+    value.map_or(String::new(), |value| format!(" := {}", expression(value)))
+}
+
+/// ` with task`, if there is one.
+pub(super) fn with_task(task: Option<&Name>) -> String {
+    task.map_or(String::new(), |task| format!(" with {}", name(&task.text)))
+}
+
+/// `hreg := 64, timers := 128`
+pub(super) fn settings(settings: &[Setting]) -> String {
+    let settings: Vec<String> = settings
+        .iter()
+        .map(|setting| format!("{} := {}", name(&setting.name.text), expression(&setting.value)))
+        .collect();
+    settings.join(", ")
+}
+
+/// `task fast(interval := T#10ms, priority := 1)`
+pub(super) fn task(task: &Task) -> String {
+    let interval = task.interval.as_ref().map(|interval| format!("interval := {}", expression(interval)));
+    let priority = task.priority.as_ref().map(|priority| format!("priority := {}", expression(priority)));
+    let settings: Vec<String> = interval.into_iter().chain(priority).collect();
+    let name = name(&task.name.text);
+    if settings.is_empty() { format!("task {name}") } else { format!("task {name}({})", settings.join(", ")) }
+}
+
+/// A label of a CASE.
+pub(super) fn label(label: &CaseLabel) -> String {
+    match &label.last {
+        Some(last) => format!("{}..{}", expression(&label.first), expression(last)),
+        None => expression(&label.first),
+    }
+}
+
+/// A statement without statements in it, on one line; `None` for one with them.
+pub(super) fn simple_statement(statement: &Statement) -> Option<String> {
+    Some(match &statement.kind {
+        StatementKind::Assignment { target, value } => format!("{} := {};", reference(target), expression(value)),
+        StatementKind::Call(call) => {
+            let arguments: Vec<String> = call.arguments.iter().map(argument).collect();
+            format!("{}{}{};", statement_head(call), arguments.join(", "), block_tail(call))
+        }
+        StatementKind::Exit => "EXIT;".to_owned(),
+        StatementKind::Return => "RETURN;".to_owned(),
+        StatementKind::If { .. } | StatementKind::Case { .. } | StatementKind::For { .. } => return None,
+    })
+}
+
+/// The start of a call that is a statement. There NOT before a parenthesis is the operator.
+pub(super) fn statement_head(call: &BlockCall) -> String {
+    match call.instance.as_name() {
+        Some(function) if call.type_name.is_none() => format!("{}(", function_name(&function.text)),
+        _ => block_head(call),
+    }
+}
+
+/// An argument on one line.
+pub(super) fn argument(argument: &Argument) -> String {
+    match &argument.wire {
+        Wire::Value(value) if argument.pin.text.is_empty() => expression(value),
+        Wire::Circuit(circuit) => {
+            let mut text = format!("{} := ", name(&argument.pin.text));
+            // A circuit that is too long for a line ends where the line does.
+            let _ = push_circuit(&mut text, circuit);
+            text
+        }
+        _ => simple_argument(argument).unwrap_or_default(),
+    }
+}
+
 /// `instance:TYPE(`
 pub(super) fn block_head(call: &BlockCall) -> String {
-    let instance = reference(&call.instance);
+    let operator =
+        |name: &&Name| ["AND", "OR", "XOR", "NOT", "MOD"].iter().any(|word| name.text.eq_ignore_ascii_case(word));
+    let instance = match call.instance.as_name().filter(operator) {
+        Some(function) if call.type_name.is_none() => function.text.clone(),
+        _ => reference(&call.instance),
+    };
     match &call.type_name {
         Some(type_name) => format!("{instance}:{}(", name(&type_name.text)),
         None => format!("{instance}("),
@@ -272,7 +372,12 @@ pub(super) fn simple_element(element: &Element) -> Option<String> {
             format!(">> {}", if is_return { format!("`{}`", target.text).into() } else { name(&target.text) })
         }
         ElementKind::Return => ">> return".to_owned(),
-        ElementKind::Block(_) | ElementKind::Parallel(_) | ElementKind::Statements(_) => return None,
+        ElementKind::Statements(statements) => match statements.as_slice() {
+            [] => "{;}".to_owned(),
+            [statement] => format!("{{{}}}", simple_statement(statement)?),
+            _ => return None,
+        },
+        ElementKind::Block(_) | ElementKind::Parallel(_) => return None,
     })
 }
 
