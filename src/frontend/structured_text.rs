@@ -11,9 +11,11 @@ mod declarations;
 mod enable;
 mod parser;
 mod place;
+mod print;
 mod recognise;
 
 pub use body::{Body, Scope, body};
+pub use print::print;
 pub use recognise::recognises;
 
 use super::Parsed;
