@@ -23,6 +23,7 @@ mod declare;
 mod expression;
 mod fold;
 mod function;
+mod function_box;
 mod initial;
 mod jump;
 mod model;
@@ -36,6 +37,7 @@ mod type_table;
 mod types;
 mod unit;
 mod usage;
+mod user_function;
 
 #[cfg(test)]
 mod tests;
@@ -50,7 +52,7 @@ pub use report::MOST_REPORTED;
 pub use type_table::MOST_ELEMENTS;
 pub use unit::MOST_INLINED;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
@@ -72,6 +74,7 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         report: Report::default(),
         types: TypeTable::default(),
         units: Vec::new(),
+        functions: unit::functions(program),
         scope: Scope::default(),
         registers: Resources::default(),
         direct: Direct::default(),
@@ -81,8 +84,6 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         labels: Labels::default(),
     };
     checker.declare_variables();
-    checker.check_registers();
-    checker.declare_direct();
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
@@ -115,6 +116,8 @@ struct Checker<'p> {
     types: TypeTable,
     /// The units as their callers see them.
     units: Vec<Signature>,
+    /// The functions among them, by their names.
+    functions: HashMap<String, UnitId>,
     scope: Scope,
     registers: Resources,
     direct: Direct,

@@ -15,6 +15,7 @@ mod output;
 mod run;
 mod show;
 mod sim;
+mod tasks;
 
 use std::process::ExitCode;
 

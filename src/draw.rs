@@ -11,9 +11,11 @@
 mod grid;
 mod label;
 mod network;
+mod overview;
 mod page;
 mod place;
 mod shape;
+mod statements;
 mod svg;
 mod symbol;
 mod text;

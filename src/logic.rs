@@ -1,8 +1,9 @@
 //! The logic IR: one scan, flattened to a straight line of primitive operations over the process image.
 //!
 //! A [`Program`] is an image [`Layout`] and a list of instructions in SSA form, cut into **sections** (one a
-//! rung, each with an opaque origin) and those into **chunks**, beyond which no value lives. There is no control
-//! flow, no block, no clock: a scan is a pure function of the image and of `now`.
+//! rung, each with an opaque origin) and those into **chunks**, beyond which no value lives. A [`Task`] is a run of
+//! chunks; a scan executes those of the tasks that are due, in order. There is no other control flow, no block, no
+//! clock: a scan is a pure function of the image and of `now`.
 //!
 //! What each operation computes is [`evaluate`], and only that; every engine is tested against it. This module
 //! must never know ladder or Cranelift.
@@ -16,6 +17,7 @@ mod parse;
 mod print;
 #[doc(hidden)]
 pub mod random;
+mod task;
 mod verify;
 
 pub use build::Builder;
@@ -23,13 +25,14 @@ pub use image::{Area, Array, ArrayId, Layout, LayoutBuilder, Slot, SlotId};
 pub use op::{Binary, Compare, Domain, Helper, Instruction, Op, Unary, ValueId};
 pub use parse::parse;
 pub use print::print;
+pub use task::{Task, Turn};
 pub use verify::{Problem, verify};
 
 /// Sections to a chunk, unless the builder cuts earlier. Chunks of 64 to 1024 rungs run alike; smaller ones
 /// compile in parallel and are replaced one by one.
 pub const CHUNK_SECTIONS: u32 = 128;
 
-/// One scan.
+/// One scan, of one round of tasks.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Program {
     /// The name of the program that it was made from.
@@ -40,6 +43,8 @@ pub struct Program {
     pub origins: Vec<Origin>,
     /// The sections, in order, which together cover all instructions.
     pub sections: Vec<Section>,
+    /// The tasks, at least one, in the order in which those run that are due. Together they cover all sections.
+    pub tasks: Vec<Task>,
     /// The instructions. A value is named by the place of the instruction that defines it.
     pub instructions: Vec<Instruction>,
 }
@@ -60,7 +65,7 @@ pub struct Section {
     pub origin: u32,
     /// One past its last instruction; the first is where the section before ends.
     pub end: u32,
-    /// Whether a new chunk starts here. The first section always starts one.
+    /// Whether a new chunk starts here. The first section of a task always starts one.
     pub starts_chunk: bool,
 }
 
@@ -69,6 +74,18 @@ impl Program {
     pub fn section_range(&self, section: usize) -> std::ops::Range<usize> {
         let start = if section == 0 { 0 } else { self.sections[section - 1].end as usize };
         start..self.sections[section].end as usize
+    }
+
+    /// The instructions of sections side by side, as indices into [`Program::instructions`].
+    pub fn instruction_range(&self, sections: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let end = |sections: usize| if sections == 0 { 0 } else { self.sections[sections - 1].end as usize };
+        end(sections.start)..end(sections.end)
+    }
+
+    /// The sections of a task.
+    pub fn task_range(&self, task: usize) -> std::ops::Range<usize> {
+        let start = if task == 0 { 0 } else { self.tasks[task - 1].end as usize };
+        start..self.tasks[task].end as usize
     }
 
     /// The chunks, each as a range of sections.

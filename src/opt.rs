@@ -3,6 +3,7 @@
 //! A pass is a pure function from a verified program to a verified one that leaves the same image after every scan,
 //! with the same layout, sections, origins and chunks. It must never move a value out of its chunk.
 
+mod fold;
 mod forward;
 mod gather;
 mod rewrite;
@@ -24,6 +25,7 @@ pub struct Pass {
 
 /// The passes, in order.
 pub const PASSES: &[Pass] = &[
+    Pass { name: "fold", run: fold::fold },
     Pass { name: "forward", run: forward::forward },
     Pass { name: "simplify", run: simplify::simplify },
     Pass { name: "gather", run: gather::gather },

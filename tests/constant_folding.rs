@@ -40,7 +40,7 @@ fn both_ways(ty: Elementary, values: &[&str], expression: &str, result: Elementa
     let (checked, diagnostics) = check::check(&parsed.program);
     let errors = diagnostics.iter().filter(|found| found.is_error()).map(|found| found.code);
     let Some(checked) = checked else { return Err(errors.collect()) };
-    match &checked.rungs()[0].circuit.branches[0].elements[0] {
+    match &checked.units()[0].rungs[0].circuit.branches[0].elements[0] {
         Element::Assignment { value, .. } => assert!(matches!(value.kind, ExpressionKind::Constant(_)), "{value:?}"),
         other => panic!("{other:?}"),
     }

@@ -76,7 +76,7 @@ fn drawing(stem: &str, example: &str) -> String {
     };
     let mut parsed = frontend::parse(&source);
     assert!(undecoded.is_none() && parsed.diagnostics.is_empty(), "{stem}.rung has errors");
-    parsed.program.variables.clear();
+    parsed.program.units.iter_mut().for_each(|unit| unit.variables.clear());
     let text = draw::text(&parsed.program, &TextOptions { width: 72 });
     text.split_once("\n\n").expect("a drawing").1.to_owned()
 }

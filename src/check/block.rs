@@ -1,5 +1,6 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
+use super::function_box::{Boxable, Boxed};
 use super::model::{Call, Callee, Circuit, Index, Input, Output, Place, Step, Type, UnitId, Wire};
 use super::network::{Power, Walk};
 use super::{Checker, types};
@@ -27,11 +28,13 @@ pub(super) struct Pins {
     name: String,
     inputs: Vec<Pin>,
     outputs: Vec<Pin>,
+    /// Whether the first output is the result of a function.
+    has_result: bool,
 }
 
 impl Pins {
     fn of_block(block: StandardBlock) -> Self {
-        let pin = |(place, pin): (usize, &crate::ladder::library::Pin)| Pin {
+        let pin = |(place, pin): (usize, &ladder::library::Pin)| Pin {
             name: pin.name.to_owned(),
             ty: Type::Elementary(pin.ty),
             range: pin.range,
@@ -42,12 +45,19 @@ impl Pins {
             name: block.name().to_owned(),
             inputs: block.inputs().iter().enumerate().map(pin).collect(),
             outputs: block.outputs().iter().enumerate().map(pin).collect(),
+            has_result: false,
         }
     }
 
     fn find<'a>(pins: &'a [Pin], name: &str) -> Option<&'a Pin> {
         let wanted = ladder::key(name);
         pins.iter().find(|pin| ladder::key(&pin.name) == wanted)
+    }
+
+    /// The output of that name; the result of a function is its `OUT`, too.
+    fn output(&self, name: &str) -> Option<&Pin> {
+        let result = || self.outputs.first().filter(|_| self.has_result && name.eq_ignore_ascii_case("OUT"));
+        Self::find(&self.outputs, name).or_else(result)
     }
 
     fn list<'a>(pins: impl Iterator<Item = &'a Pin>) -> String {
@@ -62,6 +72,15 @@ pub(super) struct Wired {
     pub(super) inputs: Vec<Input>,
     pub(super) references: Vec<(usize, Place)>,
     pub(super) outputs: Vec<(Output, Place)>,
+    /// The pins that are wired, each with the first place.
+    seen: Vec<(String, Span)>,
+}
+
+/// What a call calls.
+struct Called {
+    pins: Pins,
+    /// None where the instance has a fault, which was reported.
+    callee: Option<Callee>,
 }
 
 /// Where in a call an argument goes.
@@ -73,49 +92,87 @@ enum Target<'a> {
 }
 
 impl Checker<'_> {
-    /// A call; `in_circuit` if there is power on its left.
-    pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Call> {
-        let named = call.type_name.as_ref().map(|name| self.block_named(name));
-        let instance = self.instance(call);
-        let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named.flatten()));
-        if let Some((place, _)) = &instance {
-            self.note_call(place, span, walk);
+    /// A call; `in_circuit` if there is power on its left. Calls nest in circuits at pins, so that what is not needed while the
+    /// arguments are checked has functions of its own.
+    pub(super) fn call(&mut self, call: &BlockCall, span: Span, in_circuit: bool, walk: &mut Walk) -> Option<Boxed> {
+        if let Some(Boxable::Standard(function)) = self.boxed_function(call) {
+            return self.standard_box(function, call, walk);
         }
-        let Some(ty) = declared.or(named.flatten()) else {
+        let Some(called) = self.called_block(call, span, walk) else {
             self.arguments_of_unknown(call, walk);
             return None;
         };
+        let wired = self.arguments(&called.pins, call, walk);
+        self.finish_call(call, span, in_circuit, called, wired)
+    }
+
+    /// What is called, as far as it can be made out.
+    fn called_block(&mut self, call: &BlockCall, span: Span, walk: &mut Walk) -> Option<Box<Called>> {
+        if let Some(Boxable::User(unit)) = self.boxed_function(call) {
+            return Some(Box::new(Called { pins: self.pins_of_unit(unit), callee: Some(Callee::UserFunction(unit)) }));
+        }
+        let named = call.type_name.as_ref().and_then(|name| self.block_named(name));
+        let instance = self.instance(call);
+        let declared = instance.as_ref().and_then(|(place, ty)| self.instance_type(place, *ty, call, named));
+        if let Some((place, _)) = &instance {
+            self.note_call(place, span, walk);
+        }
+        let ty = declared.or(named)?;
         let pins = match ty {
             Type::Block(block) => Pins::of_block(block),
             Type::Unit(unit) => self.pins_of_unit(unit),
             _ => return None,
         };
-        let mut seen: Vec<(String, Span)> = Vec::new();
-        let mut wired = Wired::default();
+        // Without a declaration, or with another one, the call was reported.
+        let callee = instance.filter(|_| declared == Some(ty)).and_then(|(place, _)| match ty {
+            Type::Unit(unit) => Some(Callee::Unit(unit, place)),
+            Type::Block(block) => Some(Callee::Standard(block, place)),
+            _ => None,
+        });
+        Some(Box::new(Called { pins, callee }))
+    }
+
+    fn arguments(&mut self, pins: &Pins, call: &BlockCall, walk: &mut Walk) -> Box<Wired> {
+        let mut wired = Box::default();
         for argument in &call.arguments {
-            self.argument(&pins, argument, &mut seen, &mut wired, walk);
+            self.argument(pins, argument, &mut wired, walk);
         }
+        wired
+    }
+
+    fn finish_call(
+        &mut self,
+        call: &BlockCall,
+        span: Span,
+        in_circuit: bool,
+        called: Box<Called>,
+        wired: Box<Wired>,
+    ) -> Option<Boxed> {
+        let Called { pins, callee } = *called;
+        let Wired { enable, inputs, references, outputs, seen } = *wired;
         self.check_missing(&pins, &seen, call);
         let is_wired = |pin: &Pin| seen.iter().any(|(name, _)| *name == ladder::key(&pin.name));
         let is_bool = |pin: &&Pin| pin.ty == Type::Elementary(Elementary::Bool);
+        let is_function = matches!(callee, Some(Callee::UserFunction(_)));
         let first = pins.inputs.iter().filter(|pin| pin.takes == Takes::Value).find(is_bool);
-        let power_input = first.filter(|pin| in_circuit && !is_wired(pin)).map(|pin| pin.place);
+        let power_input = first.filter(|pin| in_circuit && !is_function && !is_wired(pin)).map(|pin| pin.place);
         let power_output = match &call.power_output {
             Some(name) => self.power_output(&pins, name)?,
+            None if is_function => Output::Eno,
             None => pins.outputs.iter().find(is_bool).map_or(Output::Eno, |pin| Output::Pin(pin.place)),
         };
-        // Without a declaration, or with another one, the call was reported.
-        let (place, _) = instance.filter(|_| declared == Some(ty))?;
-        let callee = match ty {
-            Type::Unit(unit) => {
-                self.note_unit_call(unit, span);
-                Callee::Unit(unit, place)
-            }
-            Type::Block(block) => Callee::Standard(block, place),
-            _ => return None,
-        };
-        let Wired { enable, inputs, references, outputs } = wired;
-        Some(Call { callee, enable, power_input, inputs, references, outputs, power_output })
+        let callee = callee?;
+        if let Callee::Unit(unit, _) | Callee::UserFunction(unit) = callee {
+            self.note_unit_call(unit, span);
+        }
+        if !is_function && self.in_function() {
+            let message = format!("a function remembers nothing, and {} does", types::with_article(&pins.name));
+            let problem = Diagnostic::new(Code::NoMemoryHere, span, message);
+            self.report.push(problem.hint("declare a function block instead, which has instances"));
+            return None;
+        }
+        let call = Call { callee, enable, power_input, inputs, references, outputs, power_output };
+        Some(Boxed::Call(Box::new(call)))
     }
 
     /// The place that is called.
@@ -130,10 +187,10 @@ impl Checker<'_> {
             Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
             _ => false,
         };
-        if self.loops == 0 && place.path.iter().any(computed) {
+        if place.path.iter().any(computed) {
             let message = "an instance cannot be chosen while the program runs";
             let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
-            self.report.push(problem.hint("its index must be a constant, or depend on the variable of a FOR alone"));
+            self.report.push(problem.hint("its index must be a constant; write a call for each"));
             return None;
         }
         Some((place, ty))
@@ -181,7 +238,8 @@ impl Checker<'_> {
         };
         let mut inputs = pins(&signature.inputs, Takes::Value);
         inputs.extend(pins(&signature.references, Takes::Reference));
-        Pins { name: self.type_name(Type::Unit(unit)), inputs, outputs: pins(&signature.outputs, Takes::Value) }
+        let (name, outputs) = (self.type_name(Type::Unit(unit)), pins(&signature.outputs, Takes::Value));
+        Pins { name, inputs, outputs, has_result: self.has_result(unit) }
     }
 
     /// What is wrong in the arguments whatever the block.
@@ -196,30 +254,10 @@ impl Checker<'_> {
     }
 
     /// Sorts in what is wired by one argument.
-    fn argument(
-        &mut self,
-        pins: &Pins,
-        argument: &ladder::Argument,
-        seen: &mut Vec<(String, Span)>,
-        wired: &mut Wired,
-        walk: &mut Walk,
-    ) {
-        let target = self.target(pins, argument, seen);
+    fn argument(&mut self, pins: &Pins, argument: &ladder::Argument, wired: &mut Wired, walk: &mut Walk) {
+        let target = self.target(pins, argument, &mut wired.seen);
         match (&argument.wire, target) {
-            (ladder::Wire::Output(reference), Some(Target::Output(pin))) => {
-                wired.outputs.extend(self.output(pin, reference).map(|place| (Output::Pin(pin.place), place)));
-            }
-            (ladder::Wire::Output(reference), Some(Target::Enabled)) => {
-                let eno = Pin {
-                    name: "ENO".to_owned(),
-                    ty: Type::Elementary(Elementary::Bool),
-                    range: None,
-                    takes: Takes::Value,
-                    place: 0,
-                };
-                wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
-            }
-            (ladder::Wire::Output(reference), _) => drop(self.written(reference)),
+            (ladder::Wire::Output(reference), target) => self.output_argument(target, reference, wired),
             (wire, Some(Target::Enable)) => wired.enable = self.wire(wire, Type::Elementary(Elementary::Bool), walk),
             (wire, Some(Target::Input(pin))) if pin.takes == Takes::Reference => {
                 wired.references.extend(self.reference_pin(pin, wire, walk).map(|place| (pin.place, place)));
@@ -233,6 +271,20 @@ impl Checker<'_> {
         }
     }
 
+    fn output_argument(&mut self, target: Option<Target<'_>>, reference: &ladder::Reference, wired: &mut Wired) {
+        match target {
+            Some(Target::Output(pin)) => {
+                wired.outputs.extend(self.output(pin, reference).map(|place| (Output::Pin(pin.place), place)));
+            }
+            Some(Target::Enabled) => {
+                let ty = Type::Elementary(Elementary::Bool);
+                let eno = Pin { name: "ENO".to_owned(), ty, range: None, takes: Takes::Value, place: 0 };
+                wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
+            }
+            _ => drop(self.written(reference)),
+        }
+    }
+
     /// The pin that an argument is wired to.
     fn target<'a>(
         &mut self,
@@ -242,7 +294,7 @@ impl Checker<'_> {
     ) -> Option<Target<'a>> {
         let name = &argument.pin.text;
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
-        let (input, output) = (Pins::find(&pins.inputs, name), Pins::find(&pins.outputs, name));
+        let (input, output) = (Pins::find(&pins.inputs, name), pins.output(name));
         let found = match (is_output, input, output) {
             (false, Some(pin), _) => Target::Input(pin),
             (true, _, Some(pin)) => Target::Output(pin),
@@ -260,7 +312,10 @@ impl Checker<'_> {
                 return None;
             }
         };
-        let key = ladder::key(name);
+        let key = match found {
+            Target::Input(pin) | Target::Output(pin) => ladder::key(&pin.name),
+            Target::Enable | Target::Enabled => ladder::key(name),
+        };
         if let Some((_, first)) = seen.iter().find(|(other, _)| *other == key) {
             let problem = Diagnostic::new(Code::DuplicatePin, argument.pin.span, format!("`{name}` is wired twice"));
             self.report.push(problem.related(*first, "wired first here"));
@@ -286,24 +341,27 @@ impl Checker<'_> {
         match (wire, ty) {
             (ladder::Wire::Value(value), Type::Elementary(ty)) => self.value(value, ty).map(Wire::Value),
             (ladder::Wire::Value(value), _) => {
-                let message = format!("{} is handed over by reference only", types::with_article(&self.type_name(ty)));
-                let problem = Diagnostic::new(Code::TypeMismatch, value.span, message);
-                self.report.push(problem.hint("declare the pin as `inout`"));
+                self.by_reference_only(ty, value.span);
                 None
             }
             (ladder::Wire::Circuit(circuit), _) => {
                 let checked = self.pin_circuit(circuit, walk);
-                if ty != Type::Elementary(Elementary::Bool) {
-                    let article = types::with_article(&self.type_name(ty));
-                    let message = format!("a circuit gives a BOOL, and the pin takes {article}");
-                    let problem = Diagnostic::new(Code::TypeMismatch, circuit.span, message);
-                    self.report.push(problem.hint("wire an expression, without brackets"));
-                    return None;
-                }
-                Some(Wire::Circuit(checked))
+                self.takes_circuit(ty, circuit.span).then_some(Wire::Circuit(checked))
             }
             (ladder::Wire::Output(_), _) => None,
         }
+    }
+
+    /// Whether a pin takes a circuit.
+    fn takes_circuit(&mut self, ty: Type, span: Span) -> bool {
+        let takes = ty == Type::Elementary(Elementary::Bool);
+        if !takes {
+            let article = types::with_article(&self.type_name(ty));
+            let message = format!("a circuit gives a BOOL, and the pin takes {article}");
+            let problem = Diagnostic::new(Code::TypeMismatch, span, message);
+            self.report.push(problem.hint("wire an expression, without brackets"));
+        }
+        takes
     }
 
     /// Whether a pin takes what is wired to it as far as it is a constant, or has to be one.
@@ -330,27 +388,44 @@ impl Checker<'_> {
 
     /// The variable that a reference stands for.
     fn reference_pin(&mut self, pin: &Pin, wire: &ladder::Wire, walk: &mut Walk) -> Option<Place> {
-        let ladder::Wire::Value(value) = wire else {
-            if let ladder::Wire::Circuit(circuit) = wire {
+        match wire {
+            ladder::Wire::Value(value) => self.by_reference(&pin.name, pin.ty, value),
+            ladder::Wire::Circuit(circuit) => {
                 self.pin_circuit(circuit, walk);
+                self.no_variable(&pin.name, circuit.span);
+                None
             }
-            return None;
-        };
+            ladder::Wire::Output(_) => None,
+        }
+    }
+
+    /// The variable that something of a type by this name stands for.
+    pub(super) fn by_reference(&mut self, name: &str, wanted: Type, value: &ladder::Expression) -> Option<Place> {
         let ladder::ExpressionKind::Read(reference) = &value.kind else {
             self.operand(value);
-            let message = format!("`{}` takes a variable, not a value", pin.name);
-            self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
+            self.no_variable(name, value.span);
             return None;
         };
         let (place, ty) = self.written(reference)?;
-        if ty != pin.ty || place.bit.is_some() {
-            let [wants, found] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
+        if ty != wanted || place.bit.is_some() {
+            let [wants, found] = [wanted, ty].map(|ty| types::with_article(&self.type_name(ty)));
             let found = if place.bit.is_some() { "a single bit".to_owned() } else { found };
-            let message = format!("`{}` takes {wants}, and this is {found}", pin.name);
+            let message = format!("`{name}` takes {wants}, and this is {found}");
             self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
             return None;
         }
         Some(place)
+    }
+
+    fn no_variable(&mut self, name: &str, span: Span) {
+        let message = format!("`{name}` takes a variable, not a value");
+        self.report.push(Diagnostic::new(Code::TypeMismatch, span, message));
+    }
+
+    /// Reports a whole array, structure or instance at a pin that takes values.
+    pub(super) fn by_reference_only(&mut self, ty: Type, span: Span) {
+        let message = format!("{} is handed over by reference only", types::with_article(&self.type_name(ty)));
+        self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).hint("declare the pin as `inout`"));
     }
 
     pub(super) fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
@@ -363,23 +438,29 @@ impl Checker<'_> {
     /// Where an output goes.
     fn output(&mut self, pin: &Pin, target: &ladder::Reference) -> Option<Place> {
         let (place, ty) = self.write(target)?;
-        let ty = Type::Elementary(ty);
-        if ty != pin.ty {
-            let [gives, takes] = [pin.ty, ty].map(|ty| types::with_article(&self.type_name(ty)));
-            let message = format!("`{}` gives {gives}, and this is {takes}", pin.name);
-            let problem = Diagnostic::new(Code::TypeMismatch, target.span, message);
-            self.report.push(problem.hint(format!(
-                "an output goes to a variable of its own type; declare one of {}",
-                self.type_name(pin.ty)
-            )));
+        if Type::Elementary(ty) != pin.ty {
+            self.wrong_target(&pin.name, pin.ty, Type::Elementary(ty), target.span);
             return None;
         }
         Some(place)
     }
 
+    /// Reports an output that goes to a variable of another type.
+    pub(super) fn wrong_target(&mut self, output: &str, gives: Type, takes: Type, span: Span) {
+        let [given, taken] = [gives, takes].map(|ty| types::with_article(&self.type_name(ty)));
+        let problem =
+            Diagnostic::new(Code::TypeMismatch, span, format!("`{output}` gives {given}, and this is {taken}"));
+        self.report.push(
+            problem.hint(format!(
+                "an output goes to a variable of its own type; declare one of {}",
+                self.type_name(gives)
+            )),
+        );
+    }
+
     fn power_output(&mut self, pins: &Pins, name: &Name) -> Option<Output> {
         let bools = || Pins::list(pins.outputs.iter().filter(|pin| pin.ty == Type::Elementary(Elementary::Bool)));
-        let problem = match Pins::find(&pins.outputs, &name.text) {
+        let problem = match pins.output(&name.text) {
             Some(pin) if pin.ty == Type::Elementary(Elementary::Bool) => return Some(Output::Pin(pin.place)),
             None if name.text.eq_ignore_ascii_case("ENO") => return Some(Output::Eno),
             Some(pin) => {

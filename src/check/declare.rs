@@ -44,6 +44,8 @@ impl Checker<'_> {
             self.sign(UnitId(index), unit);
         }
         self.scope.enter(None);
+        self.check_registers();
+        self.declare_direct();
         self.initialise_all(&program.globals, &globals);
         for ((index, unit), ids) in (0..).zip(&program.units).zip(&units) {
             self.scope.enter(Some(UnitId(index)));
@@ -200,6 +202,12 @@ impl Checker<'_> {
     pub(super) fn is_program(&self) -> bool {
         let unit = self.scope.unit().map(|unit| &self.program.units[unit.index()].kind);
         matches!(unit, None | Some(UnitKind::Program { .. }))
+    }
+
+    /// Whether names are now those of a function, which remembers nothing.
+    pub(super) fn in_function(&self) -> bool {
+        let unit = self.scope.unit().map(|unit| &self.program.units[unit.index()].kind);
+        matches!(unit, Some(UnitKind::Function { .. }))
     }
 
     /// What a declaration declares, of which its address may be the part that says so.

@@ -20,6 +20,14 @@ pub(super) enum Operand {
 }
 
 impl Operand {
+    /// Its type, if that is known.
+    pub(super) fn ty(&self) -> Option<Elementary> {
+        match self {
+            Self::Typed(expression) => Some(expression.ty),
+            Self::Untyped(_) => None,
+        }
+    }
+
     /// The type that it most likely is meant to have, where a BOOL cannot be made of it.
     pub(super) fn other_than_bool(&self) -> Option<Elementary> {
         match self {
@@ -310,10 +318,14 @@ impl Checker<'_> {
 
     fn division_by_zero(&mut self, op: BinaryOperator, real: bool, span: Span) {
         if matches!(op, BinaryOperator::Divide | BinaryOperator::Modulo) {
-            let result = if real { "infinite or not a number" } else { "always 0" };
-            let message = format!("what is divided by zero here is {result}");
-            self.report.push(Diagnostic::new(Code::DivisionByZero, span, message));
+            self.divided_by_zero(real, span);
         }
+    }
+
+    pub(super) fn divided_by_zero(&mut self, real: bool, span: Span) {
+        let result = if real { "infinite or not a number" } else { "always 0" };
+        let message = format!("what is divided by zero here is {result}");
+        self.report.push(Diagnostic::new(Code::DivisionByZero, span, message));
     }
 }
 

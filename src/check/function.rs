@@ -6,20 +6,22 @@
 use super::Checker;
 use super::constant::Untyped;
 use super::expression::{Operand, constant};
+use super::function_box::signature;
 use super::model::{Expression, ExpressionKind};
 use super::report::clipped;
 use super::{fold, types};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::elementary::Elementary;
+use crate::elementary::{Elementary, Value};
 use crate::ladder::functions::{Class, Function, ParameterType, ResultType, StandardFunction};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{BinaryOperator, FunctionArgument, Name, UnaryOperator};
 use crate::source::Span;
 
 /// An argument in its place.
-struct Actual {
-    operand: Operand,
-    span: Span,
+pub(super) struct Actual {
+    /// None for the input of a box that nothing is wired to: the zero of its type.
+    pub(super) operand: Option<Operand>,
+    pub(super) span: Span,
 }
 
 impl Checker<'_> {
@@ -31,6 +33,9 @@ impl Checker<'_> {
         span: Span,
         expected: Option<Elementary>,
     ) -> Option<Operand> {
+        if let Some(unit) = self.function_unit(name) {
+            return self.user_function(unit, name, arguments).map(Operand::Typed);
+        }
         // All first, so that errors in all are found.
         let operands: Vec<Option<Operand>> = arguments.iter().map(|argument| self.operand(&argument.value)).collect();
         let Some(function) = Function::from_name(&name.text) else {
@@ -41,27 +46,42 @@ impl Checker<'_> {
         let mut operands = operands.into_iter().collect::<Option<Vec<_>>>()?.into_iter().map(Some).collect::<Vec<_>>();
         let mut actuals = Vec::with_capacity(order.len());
         for index in order {
-            actuals.push(Actual { operand: operands[index].take()?, span: arguments[index].value.span });
+            actuals.push((operands[index].take()?, arguments[index].value.span));
         }
-        match function {
-            Function::Standard(function) => self.standard(function, name, actuals, span, expected),
-            Function::Convert { from, to } => {
-                let actual = actuals.pop()?;
-                let ty = from.unwrap_or_else(|| own_type(&actual.operand, Class::Any));
-                let operand = self.coerce(actual.operand, ty, actual.span)?;
-                self.called(function, vec![operand], to, span)
+        let actuals = match function {
+            Function::Standard(function) => match self.operator(function, actuals, span) {
+                Ok(value) => return value,
+                Err(actuals) => actuals,
+            },
+            _ => actuals,
+        };
+        let actuals = actuals.into_iter().map(|(operand, span)| Actual { operand: Some(operand), span }).collect();
+        let (function, operands, ty) = self.typed_call(function, name, actuals, expected)?;
+        self.called(function, operands.into_iter().map(|(operand, _)| operand).collect(), ty, span)
+    }
+
+    /// A function that is an operator, or nothing at all; else its operands again.
+    fn operator(
+        &mut self,
+        function: StandardFunction,
+        mut actuals: Vec<(Operand, Span)>,
+        span: Span,
+    ) -> Result<Option<Operand>, Vec<(Operand, Span)>> {
+        match (function, actuals.as_slice()) {
+            (StandardFunction::Move, _) => Ok(actuals.pop().map(|(operand, _)| operand)),
+            (StandardFunction::Not, _) => {
+                let unary = |(operand, inner)| self.unary_of(UnaryOperator::Not, operand, inner, span);
+                Ok(actuals.pop().and_then(unary))
             }
-            Function::Truncate { from, to } => {
-                let actual = actuals.pop()?;
-                let ty = from.unwrap_or_else(|| own_type(&actual.operand, Class::Real));
-                let operand = self.coerce(actual.operand, ty, actual.span)?;
-                if !ty.is_real() {
-                    self.not_taken(&name.text, Class::Real.describe(), ty.name(), actual.span);
-                    return None;
+            (_, [(first, _), _]) => {
+                let of_time = function.of_time().is_some() && first.ty() == Some(Elementary::Time);
+                let op = operator(function).filter(|_| !of_time);
+                match op.and_then(|op| Some((op, actuals.pop()?, actuals.pop()?))) {
+                    Some((op, right, left)) => Ok(self.binary_of(op, left, right, span)),
+                    None => Err(actuals),
                 }
-                let expected = expected.filter(|ty| ty.is_integer());
-                self.called(function, vec![operand], to.or(expected).unwrap_or(Elementary::Dint), span)
             }
+            _ => Err(actuals),
         }
     }
 
@@ -80,26 +100,22 @@ impl Checker<'_> {
 
     /// For each parameter in order the argument that it gets.
     fn arrange(&mut self, name: &Name, function: Function, arguments: &[FunctionArgument]) -> Option<Vec<usize>> {
-        let listed: Vec<&str> = match function {
-            Function::Standard(function) => function.parameters().iter().map(|parameter| parameter.name).collect(),
-            Function::Convert { .. } | Function::Truncate { .. } => vec!["IN"],
+        let least = match function {
+            Function::Standard(function) => function.parameters().len(),
+            Function::Convert { .. } | Function::Truncate { .. } => 1,
         };
         let extensible = matches!(function, Function::Standard(function) if function.is_extensible());
-        let signature = format!("{}({}{})", name.text, listed.join(", "), if extensible { ", …" } else { "" });
+        let signature = signature(name, function);
         let wrong = |span, message| {
             Diagnostic::new(Code::WrongArguments, span, message).hint(format!("its parameters are {signature}"))
         };
         let named = arguments.iter().filter(|argument| argument.parameter.is_some()).count();
         if named == 0 {
-            let fits = arguments.len() == listed.len() || extensible && arguments.len() > listed.len();
+            let fits = arguments.len() == least || extensible && arguments.len() > least;
             if !fits {
                 let at_least = if extensible { "at least " } else { "" };
-                let message = format!(
-                    "{} takes {at_least}{} arguments, and this is {}",
-                    name.text,
-                    listed.len(),
-                    arguments.len()
-                );
+                let message =
+                    format!("{} takes {at_least}{} arguments, and this is {}", name.text, least, arguments.len());
                 self.report.push(wrong(name.span, message));
             }
             return fits.then(|| (0..arguments.len()).collect());
@@ -123,7 +139,10 @@ impl Checker<'_> {
                 let message = format!("{} has no parameter `{text}`", name.text);
                 let problem = Diagnostic::new(Code::UnknownPin, parameter.span, message);
                 self.report.push(problem.hint(if parameter.text.eq_ignore_ascii_case("EN") {
-                    "the power before the braces is its EN".to_owned()
+                    format!(
+                        "the power before the braces is its EN; or call the box, `{}(EN := …)`, outside braces",
+                        name.text
+                    )
                 } else {
                     format!("its parameters are {signature}")
                 }));
@@ -137,36 +156,37 @@ impl Checker<'_> {
             self.report.push(Diagnostic::new(Code::DuplicatePin, span, "this parameter has an argument already"));
             return None;
         }
-        if places.len() < listed.len() || places.iter().enumerate().any(|(index, (place, _))| *place != index) {
+        if places.len() < least || places.iter().enumerate().any(|(index, (place, _))| *place != index) {
             self.report.push(wrong(name.span, "a parameter has no argument".to_owned()));
             return None;
         }
         Some(places.into_iter().map(|(_, index)| index).collect())
     }
 
-    fn standard(
+    /// The operands of a call in the types that its function takes, each with its place, and the type of the result.
+    pub(super) fn typed_call(
         &mut self,
-        function: StandardFunction,
+        function: Function,
         name: &Name,
-        mut actuals: Vec<Actual>,
-        span: Span,
+        actuals: Vec<Actual>,
         expected: Option<Elementary>,
-    ) -> Option<Operand> {
-        if function == StandardFunction::Move {
-            return actuals.pop().map(|actual| actual.operand);
-        }
-        if function == StandardFunction::Not {
-            let actual = actuals.pop()?;
-            return self.unary_of(UnaryOperator::Not, actual.operand, actual.span, span);
-        }
-        let of_time = function.of_time().filter(|_| {
-            actuals.len() == 2 && matches!(&actuals[0].operand, Operand::Typed(first) if first.ty == Elementary::Time)
+    ) -> Option<(Function, Vec<(Expression, Span)>, Elementary)> {
+        let standard = match function {
+            Function::Standard(function) => function,
+            Function::Convert { from, to } => {
+                let operand = self.only_operand(name, actuals, from, Class::Any)?;
+                return Some((function, vec![operand], to));
+            }
+            Function::Truncate { from, to } => {
+                let operand = self.only_operand(name, actuals, from, Class::Real)?;
+                let expected = expected.filter(|ty| ty.is_integer());
+                return Some((function, vec![operand], to.or(expected).unwrap_or(Elementary::Dint)));
+            }
+        };
+        let of_time = standard.of_time().filter(|_| {
+            actuals.len() == 2 && actuals[0].operand.as_ref().and_then(Operand::ty) == Some(Elementary::Time)
         });
-        let function = of_time.unwrap_or(function);
-        if let (Some(op), 2) = (operator(function), actuals.len()) {
-            let (right, left) = (actuals.pop()?, actuals.pop()?);
-            return self.binary_of(op, (left.operand, left.span), (right.operand, right.span), span);
-        }
+        let function = of_time.unwrap_or(standard);
         let generic = self.choose(function, name, &actuals, expected);
         let mut operands = Vec::with_capacity(actuals.len());
         for (place, Actual { operand, span }) in actuals.into_iter().enumerate() {
@@ -174,22 +194,44 @@ impl Checker<'_> {
                 ParameterType::Generic => generic?,
                 ParameterType::Exactly(ty) => ty,
                 ParameterType::Own(class) => {
-                    let ty = own_type(&operand, class);
+                    let ty = operand.as_ref().map_or(Elementary::Int, |operand| own_type(operand, class));
                     if !class.contains(ty) {
                         self.not_taken(&name.text, class.describe(), ty.name(), span);
                         return None;
                     }
                     ty
                 }
-                ParameterType::Scale => scale_type(&operand),
+                ParameterType::Scale => operand.as_ref().map_or(Elementary::Lint, scale_type),
             };
-            operands.push(self.coerce(operand, ty, span)?);
+            operands.push(match operand {
+                Some(operand) => (self.coerce(operand, ty, span)?, span),
+                None => (constant(Value::default_of(ty)), span),
+            });
         }
         let ty = match function.result() {
             ResultType::Generic => generic?,
             ResultType::Exactly(ty) => ty,
         };
-        self.called(Function::Standard(function), operands, ty, span)
+        Some((Function::Standard(function), operands, ty))
+    }
+
+    /// The operand of a function that takes only one, out of a class.
+    fn only_operand(
+        &mut self,
+        name: &Name,
+        mut actuals: Vec<Actual>,
+        from: Option<Elementary>,
+        class: Class,
+    ) -> Option<(Expression, Span)> {
+        let Actual { operand, span } = actuals.pop()?;
+        let operand = operand.unwrap_or(Operand::Untyped(Untyped::Integer(0)));
+        let ty = from.unwrap_or_else(|| own_type(&operand, class));
+        let operand = self.coerce(operand, ty, span)?;
+        if !class.contains(ty) {
+            self.not_taken(&name.text, class.describe(), ty.name(), span);
+            return None;
+        }
+        Some((operand, span))
     }
 
     /// The type of a function's generic operands. `None`: there is no such, and where there are such operands that was
@@ -204,13 +246,15 @@ impl Checker<'_> {
         let is_generic = |place| function.parameter(place).is_some_and(|found| found.ty == ParameterType::Generic);
         let generic = || actuals.iter().enumerate().filter(|(place, _)| is_generic(*place)).map(|(_, actual)| actual);
         let span = generic().map(|actual| actual.span).reduce(Span::to)?;
+        // What a comparison goes to says nothing of what it compares.
+        let expected = expected.filter(|_| function.result() == ResultType::Generic);
         let mut typed: Vec<Elementary> = Vec::new();
         let mut untyped: Vec<Untyped> = Vec::new();
         for actual in generic() {
             match &actual.operand {
-                Operand::Typed(Expression { ty, .. }) if !typed.contains(ty) => typed.push(*ty),
-                Operand::Typed(_) => {}
-                Operand::Untyped(number) => untyped.push(*number),
+                Some(Operand::Typed(Expression { ty, .. })) if !typed.contains(ty) => typed.push(*ty),
+                Some(Operand::Typed(_)) | None => {}
+                Some(Operand::Untyped(number)) => untyped.push(*number),
             }
         }
         let holds_all = |to: &Elementary| typed.iter().all(|from| from == to || types::widens(*from, *to));

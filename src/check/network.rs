@@ -7,13 +7,14 @@
 use std::collections::HashMap;
 
 use super::expression::constant;
+use super::function_box::Boxed;
 use super::jump::Labels;
 use super::model::{self, NodeId, Place, UnitId};
 use super::report::clipped;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ContactKind, ElementKind, Name, Reference, Rung};
+use crate::ladder::{self, CoilKind, ContactKind, ElementKind, Name, Reference, Rung};
 use crate::source::Span;
 
 /// What is known of the power at a point.
@@ -216,10 +217,32 @@ impl<'p> Checker<'p> {
         node.id
     }
 
-    /// An element and the power on its right.
+    /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
         match &element.kind {
+            ElementKind::Block(call) => {
+                walk.active = true;
+                let call = self.call(call, element.span, true, walk);
+                (call.map(Boxed::element), Power::Maybe)
+            }
+            ElementKind::Parallel(circuit) => {
+                let (circuit, right) = self.circuit(circuit, left, walk);
+                (Some(model::Element::Parallel(circuit)), right)
+            }
+            _ => self.simple_element(element, left, walk),
+        }
+    }
+
+    fn simple_element(
+        &mut self,
+        element: &ladder::Element,
+        left: Power,
+        walk: &mut Walk,
+    ) -> (Option<model::Element>, Power) {
+        match &element.kind {
             ElementKind::Contact { kind, operand } => {
+                let is_edge = matches!(kind, ContactKind::Rising | ContactKind::Falling);
+                self.check_edge(is_edge, "a contact", element.span);
                 let operand = self.value(operand, Elementary::Bool);
                 let blocks = operand.as_ref().and_then(model::Expression::constant).is_some_and(|value| {
                     // An edge of what never is so does not come either.
@@ -238,6 +261,7 @@ impl<'p> Checker<'p> {
                 (condition.map(model::Element::Condition), right)
             }
             ElementKind::Coil { kind, target } => {
+                self.check_edge(matches!(kind, CoilKind::Rising | CoilKind::Falling), "a coil", element.span);
                 walk.effect(left);
                 let target = self.coil_target(target);
                 if let Some(target) = &target {
@@ -253,24 +277,25 @@ impl<'p> Checker<'p> {
                 });
                 (assignment, left)
             }
-            ElementKind::Block(call) => {
-                walk.active = true;
-                let call = self.call(call, element.span, true, walk);
-                (call.map(model::Element::Call), Power::Maybe)
-            }
             ElementKind::Statements(statements) => {
                 walk.effect(left);
                 let statements = self.statements(statements, walk);
                 (Some(model::Element::Statements(statements)), left)
             }
-            ElementKind::Parallel(circuit) => {
-                let (circuit, right) = self.circuit(circuit, left, walk);
-                (Some(model::Element::Parallel(circuit)), right)
-            }
             ElementKind::Jump { target } => {
                 (self.jump(Some(target), element.span, left, walk), left.and_never(element.span))
             }
             ElementKind::Return => (self.jump(None, element.span, left, walk), left.and_never(element.span)),
+            ElementKind::Block(_) | ElementKind::Parallel(_) => (None, left),
+        }
+    }
+
+    /// Reports an edge in a function, which has no memory for it.
+    fn check_edge(&mut self, is_edge: bool, what: &str, span: Span) {
+        if is_edge && self.in_function() {
+            let message = format!("a function remembers nothing, and {what} for an edge does");
+            let problem = Diagnostic::new(Code::NoMemoryHere, span, message);
+            self.report.push(problem.hint("declare a function block instead, which has instances"));
         }
     }
 

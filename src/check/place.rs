@@ -151,7 +151,12 @@ impl Checker<'_> {
             Root::Name(name) => self.lookup(name, || None)?,
             // Without an extent it was reported when the addresses were collected.
             Root::Address(address) => {
-                let id = *self.scope.addresses.get(&Extent::of(address)?)?;
+                let Some(id) = self.scope.addresses.get(&Extent::of(address)?).copied() else {
+                    // Only what rungs use is declared by use.
+                    let message = "what stands at an address is not known before the program runs";
+                    self.report.push(Diagnostic::new(Code::NotConstant, address.span, message));
+                    return None;
+                };
                 let entry = self.scope.entry_mut(id);
                 entry.mentioned = true;
                 (entry.state != State::Broken).then_some(id)?

@@ -2,6 +2,7 @@
 //! written out, so that how often it turns is known here.
 
 use super::Checker;
+use super::function_box::Boxed;
 use super::model::{Place, Statement, Type};
 use super::network::Walk;
 use super::types;
@@ -22,7 +23,7 @@ impl Checker<'_> {
     fn statement(&mut self, statement: &ladder::Statement, walk: &mut Walk) -> Option<Statement> {
         match &statement.kind {
             StatementKind::Assignment { target, value } => self.assign(target, value),
-            StatementKind::Call(call) => self.call(call, statement.span, false, walk).map(Statement::Call),
+            StatementKind::Call(call) => self.call(call, statement.span, false, walk).map(Boxed::statement),
             StatementKind::If { branches, otherwise } => {
                 let mut checked = Vec::with_capacity(branches.len());
                 for branch in branches {

@@ -41,7 +41,7 @@ pub(super) fn binary_domain(op: BinaryOperator) -> Domain {
         And | Or | Xor => ("BOOL and bit strings", Elementary::is_bit_string),
         Add | Subtract => ("numbers and TIME", |ty| ty.is_integer() || ty.is_real() || ty == Elementary::Time),
         Multiply | Divide => ("numbers", |ty| ty.is_integer() || ty.is_real()),
-        Modulo => ("integers", Elementary::is_integer),
+        Modulo => ("integers and TIME", |ty| ty.is_integer() || ty == Elementary::Time),
         _ => ("all types", |_| true),
     }
 }

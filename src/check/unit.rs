@@ -1,12 +1,13 @@
 //! Units: what a call gives them and takes from them, what they call, and how large they are once every call is written
 //! out. What calls itself is an error, and so is what would not end in time.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::Checker;
 use super::model::{Rung, Unit, UnitId, VariableId};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{self, UnitKind, VariableClass};
+use crate::ladder::{self, Name, UnitKind, VariableClass};
 use crate::source::Span;
 
 /// The most elements, statements and operators that all calls together may write out.
@@ -58,15 +59,9 @@ impl Checker<'_> {
         }
     }
 
-    /// The unit of a function of that name.
-    pub(super) fn function_unit(&self, name: &str) -> Option<UnitId> {
-        let key = ladder::key(name);
-        let found = self
-            .program
-            .units
-            .iter()
-            .position(|unit| matches!(unit.kind, UnitKind::Function { .. }) && unit.name.key() == key)?;
-        u32::try_from(found).ok().map(UnitId)
+    /// The function of that name that the program declares.
+    pub(super) fn function_unit(&self, name: &Name) -> Option<UnitId> {
+        if self.functions.is_empty() { None } else { self.functions.get(&name.key()).copied() }
     }
 
     /// Notes that the unit that is being checked calls another.
@@ -149,10 +144,21 @@ impl Checker<'_> {
 /// The unit as it runs.
 pub(super) fn checked(drawn: &ladder::Unit, signature: Signature, rungs: Vec<Rung>) -> Unit {
     let kind = match &drawn.kind {
-        ladder::UnitKind::Program { .. } => super::UnitKind::Program,
-        ladder::UnitKind::FunctionBlock => super::UnitKind::FunctionBlock,
-        ladder::UnitKind::Function { result } => super::UnitKind::Function { has_result: result.is_some() },
+        UnitKind::Program { .. } => super::UnitKind::Program,
+        UnitKind::FunctionBlock => super::UnitKind::FunctionBlock,
+        UnitKind::Function { result } => super::UnitKind::Function { has_result: result.is_some() },
     };
     let Signature { variables, inputs, outputs, references, .. } = signature;
     Unit { name: drawn.name.text.clone(), kind, variables, inputs, outputs, references, rungs, span: drawn.span }
+}
+
+/// The functions that a program declares, by their names.
+pub(super) fn functions(program: &ladder::Program) -> HashMap<String, UnitId> {
+    let mut functions = HashMap::new();
+    for (index, unit) in (0..).zip(&program.units) {
+        if matches!(unit.kind, UnitKind::Function { .. }) {
+            functions.entry(unit.name.key()).or_insert(UnitId(index));
+        }
+    }
+    functions
 }

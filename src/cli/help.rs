@@ -64,6 +64,16 @@ const PAGES: &[Page] = pages! {
     "pid": "pid" "controller";
     "ramp": "ramp";
     "hysteresis": "hysteresis" "two-point switch";
+    "../register-machine": "registers" "register machine" "ireg" "oreg" "hreg";
+    "tt": "tt";
+    "ts": "ts";
+    "uc": "uc";
+    "dc": "dc";
+    "dr": "dr" "drum";
+    "shiftl": "shiftl" "shift left" "shift register";
+    "shiftr": "shiftr" "shift right";
+    "bs": "bs" "bit set";
+    "bc": "bc" "bit clear";
 };
 
 impl Page {

@@ -6,7 +6,7 @@ mod engine;
 mod machine;
 mod plain;
 mod points;
-mod time;
+pub(super) mod time;
 mod view;
 
 use std::io::IsTerminal;
@@ -20,7 +20,7 @@ use rung_runtime::host::{End, Histogram, Statistics};
 use rung_runtime::{Fault, Stopped};
 
 use super::load::Loaded;
-use super::{Failure, duration, load_checked, print};
+use super::{Failure, duration, load_checked, print, report, tasks};
 use crate::check::Checked;
 use crate::diagnostic::Code;
 use crate::elementary::Value;
@@ -46,9 +46,9 @@ const LONGEST_CYCLE: i64 = 3_600_000_000_000;
 pub(super) struct Arguments {
     /// The program; `-` is the standard input
     file: PathBuf,
-    /// Time from one scan to the next, a multiple of the tick
-    #[arg(long, value_parser = duration::parse, default_value = "10ms", value_name = "TIME")]
-    cycle: i64,
+    /// Time from one scan to the next, a multiple of the tick [default: what the tasks' intervals have in common, or 10ms]
+    #[arg(long, value_parser = duration::parse, value_name = "TIME")]
+    cycle: Option<i64>,
     /// Period of the tick interrupt, which is the grain of all times
     #[arg(long, value_parser = duration::parse, default_value = "1ms", value_name = "TIME")]
     tick: i64,
@@ -73,18 +73,20 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let timing = timing(arguments)?;
     let (loaded, checked) = load_checked(&arguments.file)?;
     let began = Instant::now();
     let lowered = lower(&checked, &loaded.source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image would be larger than 1 GiB"))?;
     let program = optimise(lowered);
+    let cycle = arguments.cycle.unwrap_or_else(|| tasks::cycle(&program));
+    let timing = timing(arguments, cycle)?;
+    report(&tasks::notes(&program, cycle));
     let engine = Engine::new(arguments.engine, &program)
         .map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
     let compiled_in = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     let points = Points::new(&checked, &program.layout);
     let inputs = initial_inputs(&arguments.set, &points)?;
-    print(&description(arguments, &checked, &program, &engine, compiled_in))?;
+    print(&description(arguments, &checked, &program, &engine, cycle, compiled_in))?;
 
     let stop = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&stop);
@@ -96,7 +98,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::new(Code::CannotStart, error.to_string()))?;
     let watched = print(&format!("  {}\n", machine.scheduling)).and_then(|()| {
         if live {
-            view::watch(&machine, &points, &view::Title { program: &program.name, arguments })
+            view::watch(
+                &machine,
+                &points,
+                &view::Title { program: &program.name, engine: arguments.engine.name(), cycle },
+            )
         } else {
             plain::watch(&machine, &told)
         }
@@ -106,7 +112,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     machine.shared.stop.store(true, Ordering::Relaxed);
     let shared = Arc::clone(&machine.shared);
     let outcome = machine.finish();
-    let watched = watched.and_then(|()| print(&summary(&shared.statistics, timing.watchdog)));
+    let fault = outcome.as_ref().is_ok_and(|outcome| points.is_faulty(&outcome.image));
+    let watched = watched.and_then(|()| print(&summary(&shared.statistics, timing.watchdog, &program, fault)));
     // A fault is told in any case, also where nobody reads the standard output any more.
     match outcome {
         Err(Lost::Hung) => {
@@ -120,9 +127,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Ticks from what was asked for.
-fn timing(arguments: &Arguments) -> Result<Timing, Failure> {
+fn timing(arguments: &Arguments, cycle: i64) -> Result<Timing, Failure> {
     let bad = |message: String| Failure::new(Code::BadTiming, message);
-    let &Arguments { cycle, tick, .. } = arguments;
+    let tick = arguments.tick;
     if cycle % tick != 0 {
         let (cycle, tick) = (time::exact(cycle), time::exact(tick));
         return Err(bad(format!("the cycle, {cycle}, is no multiple of the tick, {tick}")));
@@ -163,6 +170,7 @@ fn description(
     checked: &Checked,
     program: &Program,
     engine: &Engine,
+    cycle: i64,
     compiled_in: u64,
 ) -> String {
     let counts = elements::count(checked);
@@ -171,9 +179,10 @@ fn description(
         .code_bytes()
         .map_or_else(String::new, |bytes| format!(", {bytes} bytes of code ({} a rung)", bytes.div_ceil(rungs.max(1))));
     let boxes = if counts.boxes == 0 { String::new() } else { format!(", {} boxes", counts.boxes) };
+    let tasks = tasks::listed(program).map_or_else(String::new, |tasks| format!("  tasks {tasks}\n"));
     format!(
         "{}: {rungs} rungs, {} contacts, {} coils, {} blocks{boxes}\n  image {} bytes, {} instructions of logic{code}, \
-         compiled in {}\n  engine {}, cycle {}, tick {}\n",
+         compiled in {}\n  engine {}, cycle {}, tick {}\n{tasks}",
         checked.name(),
         counts.contacts,
         counts.coils,
@@ -182,17 +191,19 @@ fn description(
         program.instructions.len(),
         time::rounded(compiled_in),
         arguments.engine.name(),
-        time::exact(arguments.cycle),
+        time::exact(cycle),
         time::exact(arguments.tick),
     )
 }
 
 /// The figures of a whole run.
-fn summary(statistics: &Statistics, watchdog: u64) -> String {
+fn summary(statistics: &Statistics, watchdog: u64, program: &Program, fault: bool) -> String {
+    let tasks = tasks::listed(program).map_or_else(String::new, |tasks| format!("  tasks     {tasks}\n"));
+    let fault = if fault { format!("  fault     {}\n", tasks::FAULT) } else { String::new() };
     let line =
         |name: &str, histogram: &Histogram| format!("  {name:<9} {} (p50 / p99 / max)\n", plain::quantiles(histogram));
     format!(
-        "ended after {} cycles, {} overruns, {} skipped\n{}{}  {:<9} {}\n",
+        "ended after {} cycles, {} overruns, {} skipped\n{}{}  {:<9} {}\n{tasks}{fault}",
         statistics.cycles(),
         statistics.overruns(),
         statistics.skipped(),

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use rung_runtime::Scan;
 
 use super::run::difference;
-use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_source};
+use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_source, report, tasks};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
 use crate::engine::interp::Interpreter;
@@ -32,9 +32,9 @@ pub(super) struct Arguments {
     /// A CSV table of what is set when: `time_ms,name,name,…`
     #[arg(long, value_name = "FILE.csv")]
     stimuli: Option<PathBuf>,
-    /// Time from one scan to the next
-    #[arg(long, value_parser = duration::parse, default_value = "10ms")]
-    cycle: i64,
+    /// Time from one scan to the next [default: what the tasks' intervals have in common, or 10ms]
+    #[arg(long, value_parser = duration::parse)]
+    cycle: Option<i64>,
     /// Run so many scans [default: until a second after the last stimulus, or 100 scans without stimuli]
     #[arg(long, conflicts_with = "duration")]
     scans: Option<u64>,
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(names) => Signal::select(&program.layout, names)
             .map_err(|name| Failure::new(Code::UndeclaredName, format!("there is no variable `{name}` to trace")))?,
     };
-    let course = Course::read(arguments, &program.layout)?;
+    let course = Course::read(arguments, &program)?;
     // Made before the outputs, so that what cannot be compiled leaves nothing.
     let mut engines = Engines::new(arguments.engine, &program)?;
     let paths = trace_paths(&arguments.trace)?;
@@ -123,6 +123,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 return Err(Failure::Closed);
             }
         }
+    }
+    if program.layout.fault().is_some_and(|slot| program.layout.slot(slot).read(simulation.image()).is_true()) {
+        report(&format!("note: {}\n", tasks::FAULT));
     }
     for (path, mut trace) in outputs {
         unless_closed(trace.finish().map_err(|error| cannot_write(path, &error)))?;
@@ -195,7 +198,8 @@ enum Course {
 }
 
 impl Course {
-    fn read(arguments: &Arguments, layout: &Layout) -> Result<Self, Failure> {
+    fn read(arguments: &Arguments, program: &Program) -> Result<Self, Failure> {
+        let layout = &program.layout;
         if let Some(path) = &arguments.replay {
             let source = read_source(path)?;
             let replay = Replay::parse(&source).and_then(|replay| replay.check(layout).map(|()| replay));
@@ -208,7 +212,8 @@ impl Course {
                 Stimuli::parse(&source, layout).map_err(|problems| Failure::diagnostics(&source, &problems))?
             }
         };
-        let cycle = arguments.cycle;
+        let cycle = arguments.cycle.unwrap_or_else(|| tasks::cycle(program));
+        report(&tasks::notes(program, cycle));
         let schedule = match (arguments.scans, arguments.duration) {
             (Some(scans), _) => Schedule::scans(cycle, scans),
             (None, Some(duration)) => Schedule::before(cycle, duration),

@@ -7,7 +7,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use crate::ladder::{
     BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, ElementKind, Expression, ExpressionKind,
-    Literal, Reference, Root, Step, UnaryOperator, Wire,
+    Literal, Reference, Root, Step, TypeReference, UnaryOperator, Wire,
 };
 
 /// What stands for that which was cut.
@@ -65,6 +65,41 @@ pub(super) fn cut_end(text: &str, limit: usize) -> String {
     format!("{start}{CUT}")
 }
 
+/// Breaks a text into lines of at most `limit` columns, between words where possible.
+pub(super) fn wrap(text: &str, limit: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let paragraph = clean(paragraph);
+        let mut line = String::new();
+        let mut used = 0;
+        for (index, word) in paragraph.trim_end().split(' ').enumerate() {
+            let blank = usize::from(index > 0);
+            let mut word = word;
+            let mut columns = width(word);
+            if used + blank + columns <= limit {
+                line.extend((blank > 0).then_some(' '));
+                used += blank;
+            } else if used > 0 {
+                lines.push(std::mem::take(&mut line).trim_end().to_owned());
+                used = 0;
+            }
+            while columns > limit {
+                let start = start_of(word, limit);
+                if start.is_empty() {
+                    break;
+                }
+                lines.push(start.to_owned());
+                word = &word[start.len()..];
+                columns = columns.saturating_sub(width(start));
+            }
+            line.push_str(word);
+            used += columns;
+        }
+        lines.push(line.trim_end().to_owned());
+    }
+    lines
+}
+
 /// A name cut in its middle, since names differ at their ends as often as at their starts.
 pub(super) fn cut_name(text: &str, limit: usize) -> String {
     let text = clean(text);
@@ -92,6 +127,21 @@ pub(super) fn expression(expression: &Expression, limit: usize) -> String {
     let mut writer = Writer::new(limit);
     writer.expression(expression, 0);
     cut_end(&writer.text, limit)
+}
+
+/// A type, cut in its middle.
+pub(super) fn type_reference(ty: &TypeReference, limit: usize) -> String {
+    if ty.dimensions.is_empty() {
+        return cut_name(&ty.name.text, limit);
+    }
+    let mut writer = Writer::new(limit);
+    writer.push("array [");
+    writer.list(&ty.dimensions, |writer, dimension| {
+        writer.expression(&dimension.first, 0);
+        writer.push("..");
+        writer.expression(&dimension.last, 0);
+    });
+    cut_name(&format!("{}] of {}", writer.text, ty.name.text), limit)
 }
 
 /// `target := value`, cut at its end.
@@ -318,7 +368,11 @@ impl Writer {
                 self.push("}");
             }
             ElementKind::Parallel(inner) => self.circuit(inner),
-            ElementKind::Statements(_) => self.push("{…}"),
+            ElementKind::Statements(_) => {
+                // They have a box of their own and no short form.
+                self.push("{…}");
+                self.incomplete = true;
+            }
             ElementKind::Block(call) => self.block(call),
             ElementKind::Jump { target } => self.push(&format!(">> {}", target.text)),
             ElementKind::Return => self.push(">> return"),

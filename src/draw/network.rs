@@ -3,8 +3,8 @@
 //! One pass over the model, each element once. It must not recurse deeper than a fixed depth, whatever the model
 //! holds: a circuit nested deeper is drawn as a box with `…`.
 
-use super::label;
 use super::symbol::{InstanceTypes, Limits, Symbol, node_text};
+use super::{label, statements};
 use crate::ladder::{BlockCall, Branch, Circuit, ElementKind, Wire};
 
 /// How deep circuits are drawn one inside the other.
@@ -146,15 +146,17 @@ impl Builder<'_> {
         Part::Symbol(match element {
             ElementKind::Contact { kind, operand } => Symbol::contact(*kind, operand, limits),
             ElementKind::Coil { kind, target } => Symbol::coil(*kind, target, limits),
-            ElementKind::Condition(condition) => Symbol::boxed(label::expression(condition, limits.expression), false),
+            ElementKind::Condition(condition) => {
+                Symbol::boxed(vec![label::expression(condition, limits.expression)], false)
+            }
             ElementKind::Assignment { target, value } => {
-                Symbol::boxed(label::assignment(target, value, limits.expression), true)
+                Symbol::boxed(vec![label::assignment(target, value, limits.expression)], true)
             }
             ElementKind::Block(call) => self.block(call),
-            ElementKind::Statements(_) => Symbol::boxed("…".to_owned(), true),
+            ElementKind::Statements(list) => Symbol::boxed(statements::lines(list, limits.expression), true),
             ElementKind::Jump { target } => Symbol::jump(&target.text, limits),
             ElementKind::Return => Symbol::jump("return", limits),
-            ElementKind::Parallel(_) if self.depth >= MAXIMUM_DEPTH => Symbol::boxed("…".to_owned(), false),
+            ElementKind::Parallel(_) if self.depth >= MAXIMUM_DEPTH => Symbol::boxed(vec!["…".to_owned()], false),
             ElementKind::Parallel(inner) => return Part::Group(self.circuit(inner)),
         })
     }

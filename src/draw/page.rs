@@ -1,12 +1,13 @@
-//! The page: the program's name, its declarations, and the rungs below each other with their titles and comments.
+//! The page: the program's name, what it declares, and unit by unit its declarations and the rungs below each other with
+//! their titles and comments.
 
 use super::grid::Grid;
-use super::label;
 use super::network::networks;
 use super::place::picture;
 use super::shape::Picture;
 use super::symbol::{InstanceTypes, Limits};
-use crate::ladder::{Comment, Program, Rung, Variable, VariableClass};
+use super::{label, overview};
+use crate::ladder::{Comment, Program, Rung, Unit, Variable, VariableClass};
 
 /// The columns of the declarations.
 const HEADINGS: [&str; 6] = ["class", "name", "type", "address", "initial", "retain"];
@@ -25,6 +26,17 @@ const MARGINS: usize = 8;
 pub(super) struct Page {
     /// The program's name, cut to the width.
     pub(super) title: String,
+    /// Types, tasks, and what else stands outside the units, line by line.
+    pub(super) overview: Vec<String>,
+    /// The variables that all units see.
+    pub(super) globals: Table,
+    pub(super) units: Vec<UnitPicture>,
+}
+
+/// One unit laid out.
+pub(super) struct UnitPicture {
+    /// What it is and its name, cut to the width; empty where the title of the page says it.
+    pub(super) heading: String,
     pub(super) declarations: Table,
     pub(super) rungs: Vec<RungPicture>,
 }
@@ -53,35 +65,64 @@ pub(super) struct RungPicture {
 impl Page {
     /// Lays out a program for so many columns.
     pub(super) fn of(program: &Program, width: usize) -> Self {
-        let unit = &program.units[0];
-        let types = InstanceTypes::of(program);
         let limits = Limits::within(width.saturating_sub(MARGINS));
-        let grids: Vec<Vec<Grid>> = unit
-            .rungs
-            .iter()
-            .map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(|net| Grid::new(net, width)).collect())
-            .collect();
+        let networks = |unit: &Unit| -> Vec<Vec<Grid>> {
+            let types = InstanceTypes::of(program, unit);
+            let grid = |net| Grid::new(net, width);
+            unit.rungs
+                .iter()
+                .map(|rung| networks(&rung.circuit, &types, limits).into_iter().map(grid).collect())
+                .collect()
+        };
+        let grids: Vec<Vec<Vec<Grid>>> = program.units.iter().map(networks).collect();
         // All right rails stand in one column, but for rungs with an element too wide for the page.
-        let fitting = grids.iter().flatten().map(Grid::total_columns).filter(|columns| *columns <= width);
+        let fitting = grids.iter().flatten().flatten().map(Grid::total_columns).filter(|columns| *columns <= width);
         let columns = fitting.max().unwrap_or(0);
         // Prose is not drawn out far beyond the rungs.
         let prose = columns.max(READABLE).min(width);
-        let mut comments = Comments { rest: &program.comments, from: declarations_end(program) };
-        let rungs = unit
-            .rungs
+        let overview: Vec<String> = overview::lines(program).iter().flat_map(|line| label::wrap(line, prose)).collect();
+        let globals = Table::of(&program.globals, Some("global"), width);
+        let mut units: Vec<UnitPicture> = program
+            .units
             .iter()
             .zip(grids)
-            .enumerate()
-            .map(|(index, (rung, grids))| RungPicture {
-                comments: comments.before(rung).flat_map(|comment| wrap(&comment.text, prose - 3)).collect(),
-                heading: heading(rung, index, prose),
-                enabled: rung.enabled,
-                picture: picture(grids, columns).ok_or_else(|| label::cut_end("(too large to draw)", width)),
-            })
+            .map(|(unit, grids)| unit_picture(program, unit, grids, Columns { width, rails: columns, prose }))
             .collect();
-        let title = label::cut_end(&format!("program {}", program.name.text), width);
-        Self { title, declarations: Table::of(&unit.variables, width), rungs }
+        let mut title = label::cut_end(&format!("program {}", program.name.text), width);
+        if let [only] = units.as_mut_slice()
+            && overview.is_empty()
+            && globals.rows.is_empty()
+        {
+            title = std::mem::take(&mut only.heading);
+        }
+        Self { title, overview, globals, units }
     }
+}
+
+/// How wide things are.
+#[derive(Clone, Copy)]
+struct Columns {
+    width: usize,
+    rails: usize,
+    prose: usize,
+}
+
+fn unit_picture(program: &Program, unit: &Unit, grids: Vec<Vec<Grid>>, columns: Columns) -> UnitPicture {
+    let mut comments = Comments { rest: &program.comments, from: declarations_end(unit) };
+    let rungs = unit
+        .rungs
+        .iter()
+        .zip(grids)
+        .enumerate()
+        .map(|(index, (rung, grids))| RungPicture {
+            comments: comments.before(rung).flat_map(|comment| label::wrap(&comment.text, columns.prose - 3)).collect(),
+            heading: heading(rung, index, columns.prose),
+            enabled: rung.enabled,
+            picture: picture(grids, columns.rails).ok_or_else(|| label::cut_end("(too large to draw)", columns.width)),
+        })
+        .collect();
+    let heading = label::cut_end(&overview::unit(unit), columns.width);
+    UnitPicture { heading, declarations: Table::of(&unit.variables, None, columns.width), rungs }
 }
 
 fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
@@ -96,14 +137,13 @@ fn heading(rung: &Rung, index: usize, width: usize) -> Vec<String> {
         heading.push_str("  ");
         heading.push_str(title);
     }
-    wrap(&heading, width)
+    label::wrap(&heading, width)
 }
 
 /// Where the declarations end, as far as they stand before the first rung.
-fn declarations_end(program: &Program) -> u32 {
-    let unit = &program.units[0];
+fn declarations_end(unit: &Unit) -> u32 {
     let first = unit.rungs.first().map_or(u32::MAX, |rung| rung.span.start);
-    let ends = unit.variables.iter().map(|variable| variable.span.end).chain([program.name.span.end]);
+    let ends = unit.variables.iter().map(|variable| variable.span.end).chain([unit.name.span.end]);
     ends.filter(|end| *end <= first).max().unwrap_or(0)
 }
 
@@ -123,47 +163,13 @@ impl<'a> Comments<'a> {
     }
 }
 
-/// Breaks a text into lines of at most `width` columns, between words where possible.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    for paragraph in text.lines() {
-        let paragraph = label::clean(paragraph);
-        let mut line = String::new();
-        let mut used = 0;
-        for (index, word) in paragraph.trim_end().split(' ').enumerate() {
-            let blank = usize::from(index > 0);
-            let mut word = word;
-            let mut columns = label::width(word);
-            if used + blank + columns <= width {
-                line.extend((blank > 0).then_some(' '));
-                used += blank;
-            } else if used > 0 {
-                lines.push(std::mem::take(&mut line).trim_end().to_owned());
-                used = 0;
-            }
-            while columns > width {
-                let start = label::start_of(word, width);
-                if start.is_empty() {
-                    break;
-                }
-                lines.push(start.to_owned());
-                word = &word[start.len()..];
-                columns = columns.saturating_sub(label::width(start));
-            }
-            line.push_str(word);
-            used += columns;
-        }
-        lines.push(line.trim_end().to_owned());
-    }
-    lines
-}
-
 impl Table {
-    fn of(variables: &[Variable], width: usize) -> Self {
+    /// A table of variables, all of one class in words or each of its own.
+    fn of(variables: &[Variable], class: Option<&str>, width: usize) -> Self {
         if variables.is_empty() {
             return Self { starts: Vec::new(), rows: Vec::new() };
         }
-        let mut rows: Vec<[String; 6]> = variables.iter().map(row).collect();
+        let mut rows: Vec<[String; 6]> = variables.iter().map(|variable| row(variable, class)).collect();
         let says_something: Vec<usize> =
             (0..HEADINGS.len()).filter(|column| rows.iter().any(|row| !row[*column].is_empty())).collect();
         rows.insert(0, HEADINGS.map(str::to_owned));
@@ -193,13 +199,13 @@ impl Table {
     /// The declarations as lines, for a width that has no room for columns.
     fn without_columns(rows: &[[String; 6]], width: usize) -> Self {
         let words = |row: &[String; 6]| row.iter().filter(|cell| !cell.is_empty()).cloned().collect::<Vec<_>>();
-        let lines = rows.iter().flat_map(|row| wrap(&words(row).join(" "), width - GAP));
+        let lines = rows.iter().flat_map(|row| label::wrap(&words(row).join(" "), width - GAP));
         Self { starts: vec![GAP], rows: lines.map(|line| vec![line]).collect() }
     }
 }
 
-fn row(variable: &Variable) -> [String; 6] {
-    let class = match variable.class {
+fn row(variable: &Variable, class: Option<&str>) -> [String; 6] {
+    let own = match variable.class {
         VariableClass::Input => "input",
         VariableClass::Output => "output",
         VariableClass::Memory => "var",
@@ -208,9 +214,9 @@ fn row(variable: &Variable) -> [String; 6] {
         VariableClass::Temporary => "temp",
     };
     [
-        class.to_owned(),
+        class.filter(|_| variable.class == VariableClass::Memory).unwrap_or(own).to_owned(),
         label::cut_name(&variable.name.text, WIDEST_COLUMN),
-        variable.ty.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::cut_name(&ty.name.text, WIDEST_COLUMN)),
+        variable.ty.as_ref().map_or_else(|| "BOOL".to_owned(), |ty| label::type_reference(ty, WIDEST_COLUMN)),
         variable.address.as_ref().map_or_else(String::new, ToString::to_string),
         variable.initial.as_ref().map_or_else(String::new, |value| label::expression(value, WIDEST_COLUMN)),
         if variable.retain { "retain" } else { "" }.to_owned(),

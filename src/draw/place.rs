@@ -161,13 +161,20 @@ impl Placer {
                 let frame = self.framed(name, cell, y);
                 self.shapes.push(Shape::Coil { x: frame, y, mark });
             }
-            SymbolKind::Box { text } => {
-                let width = label::width(&text);
+            SymbolKind::Box { lines } => {
+                let width = lines.iter().map(|line| label::width(line)).max().unwrap_or(0);
                 let frame = x + (columns - (width + 4)) / 2;
                 self.wire(y, middle(left), middle(frame));
                 self.wire(y, middle(frame + width + 3), middle(right));
-                self.shapes.push(Shape::Frame { x: frame, y: y - 1, columns: width + 4, rows: 3 });
-                self.text(2 * frame + width + 4, y, text, Align::Middle, Role::Name);
+                self.shapes.push(Shape::Frame { x: frame, y: y - 1, columns: width + 4, rows: lines.len().max(1) + 2 });
+                if let [only] = lines.as_slice() {
+                    return self.text(2 * frame + width + 4, y, only.clone(), Align::Middle, Role::Name);
+                }
+                for (row, line) in lines.into_iter().enumerate() {
+                    let text = line.trim_start();
+                    let start = frame + 2 + label::width(&line) - label::width(text);
+                    self.text(2 * start, y + row, text.to_owned(), Align::Left, Role::Name);
+                }
             }
             SymbolKind::NodeStart { text } => {
                 let width = label::width(&text);

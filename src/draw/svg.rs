@@ -4,7 +4,7 @@ use svg::Document;
 use svg::node::element::{Circle, Group, Line, Path, Polygon, Rectangle, Style, Text, Title};
 
 use super::label;
-use super::page::{Page, RungPicture};
+use super::page::{Page, RungPicture, Table};
 use super::shape::{Align, Picture, Role, Shape};
 
 /// Units that one column is wide.
@@ -38,9 +38,16 @@ pub(super) fn render(page: &Page) -> String {
     let mut sheet = Sheet { root: Group::new(), y: MARGIN, columns: 0 };
     sheet.line("program", &page.title);
     sheet.y += ROW / 2;
-    sheet.declarations(page);
-    for rung in &page.rungs {
-        sheet.rung(rung);
+    page.overview.iter().for_each(|text| sheet.line("cell", text));
+    sheet.declarations(&page.globals);
+    for unit in &page.units {
+        if !unit.heading.is_empty() {
+            sheet.y += ROW;
+            sheet.line("heading", &unit.heading);
+            sheet.y += ROW / 4;
+        }
+        sheet.declarations(&unit.declarations);
+        unit.rungs.iter().for_each(|rung| sheet.rung(rung));
     }
     let (width, height) = (sheet.columns * COLUMN + 2 * MARGIN, sheet.y + MARGIN);
     let document = Document::new()
@@ -78,8 +85,7 @@ impl Sheet {
         self.y += ROW;
     }
 
-    fn declarations(&mut self, page: &Page) {
-        let table = &page.declarations;
+    fn declarations(&mut self, table: &Table) {
         for (index, row) in table.rows.iter().enumerate() {
             let y = row_middle(0) + BASELINE + units(self.y);
             for (start, cell) in table.starts.iter().zip(row).filter(|(_, cell)| !cell.is_empty()) {

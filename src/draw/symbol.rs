@@ -3,11 +3,14 @@
 //! Sizes are in grid columns (one terminal column) and grid rows (one line). A symbol must know nothing of the
 //! place where it will stand.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::label;
+use crate::ladder::functions::Function;
 use crate::ladder::library::StandardBlock;
-use crate::ladder::{BlockCall, CoilKind, ContactKind, Expression, Program, Reference, Wire, key};
+use crate::ladder::{
+    BlockCall, CoilKind, ContactKind, Expression, Program, Reference, Root, Step, Unit, UnitKind, Variable, Wire,
+};
 
 /// The columns of the frame of a contact or coil: its two sides and the mark between.
 pub(super) const FRAME: usize = 3;
@@ -62,7 +65,7 @@ pub(super) struct Symbol {
 pub(super) enum SymbolKind {
     Contact { mark: char, name: String },
     Coil { mark: char, name: String },
-    Box { text: String },
+    Box { lines: Vec<String> },
     NodeStart { text: String },
     NodeEnd { text: String },
     Jump { text: String },
@@ -127,10 +130,11 @@ impl Symbol {
         Self { kind: SymbolKind::Coil { mark, name }, columns, above: 1, below: 0, is_output: true }
     }
 
-    /// A box with a text.
-    pub(super) fn boxed(text: String, is_output: bool) -> Self {
-        let columns = label::width(&text) + 6;
-        Self { kind: SymbolKind::Box { text }, columns, above: 1, below: 1, is_output }
+    /// A box with lines of text, the first of them beside the wire.
+    pub(super) fn boxed(lines: Vec<String>, is_output: bool) -> Self {
+        let columns = lines.iter().map(|line| label::width(line)).max().unwrap_or(0) + 6;
+        let below = lines.len().max(1);
+        Self { kind: SymbolKind::Box { lines }, columns, above: 1, below, is_output }
     }
 
     /// The connector of a node that the wire starts from.
@@ -161,13 +165,17 @@ impl Symbol {
         circuit_labels: Vec<String>,
         limits: Limits,
     ) -> Self {
-        let type_name = call
-            .type_name
-            .as_ref()
-            .map(|name| name.text.as_str())
-            .or_else(|| call.instance.as_name().and_then(|name| types.type_of(&name.text)));
-        let (left, right) = pins(call, type_name.and_then(StandardBlock::from_name), circuit_labels, limits);
-        let instance = label::reference(&call.instance, limits.block);
+        let function = types.function(call);
+        let type_name = function.or_else(|| types.type_of(call));
+        let powered = match function {
+            Some(_) => Powered::Function,
+            None => type_name.and_then(StandardBlock::from_name).map_or(Powered::Unknown, Powered::Block),
+        };
+        let (left, right) = pins(call, powered, circuit_labels, limits);
+        let instance = match function {
+            Some(_) => String::new(),
+            None => label::reference(&call.instance, limits.block),
+        };
         let type_name = label::cut_name(type_name.unwrap_or("?"), limits.block);
 
         let widest = |pins: &[PinLabel], text: fn(&PinLabel) -> &str| {
@@ -200,28 +208,63 @@ pub(super) fn node_text(name: &str, limits: Limits) -> String {
     format!(">{}>", label::cut_name(name, limits.name.saturating_sub(3).max(3)))
 }
 
-/// The types of the declared instances.
-pub(super) struct InstanceTypes<'a>(HashMap<String, &'a str>);
+/// What the names of a unit stand for, as far as boxes show it.
+pub(super) struct InstanceTypes<'a> {
+    /// The types of what is declared.
+    types: HashMap<String, Option<&'a str>>,
+    /// The functions of the program.
+    functions: HashSet<String>,
+}
 
 impl<'a> InstanceTypes<'a> {
-    /// Those of a program.
-    pub(super) fn of(program: &'a Program) -> Self {
-        let typed = |variable: &'a crate::ladder::Variable| {
-            variable.ty.as_ref().map(|ty| (variable.name.key(), ty.name.text.as_str()))
-        };
-        Self(program.units[0].variables.iter().filter_map(typed).collect())
+    /// Those of a unit.
+    pub(super) fn of(program: &'a Program, unit: &'a Unit) -> Self {
+        let typed =
+            |variable: &'a Variable| (variable.name.key(), variable.ty.as_ref().map(|ty| ty.name.text.as_str()));
+        let is_function = |unit: &&Unit| matches!(unit.kind, UnitKind::Function { .. });
+        Self {
+            types: program.globals.iter().chain(&unit.variables).map(typed).collect(),
+            functions: program.units.iter().filter(is_function).map(|unit| unit.name.key()).collect(),
+        }
     }
 
-    fn type_of(&self, instance: &str) -> Option<&'a str> {
-        self.0.get(&key(instance)).copied()
+    /// The type of what a call calls: that which it names itself, or that of the declaration, of an array its elements'.
+    fn type_of(&self, call: &'a BlockCall) -> Option<&'a str> {
+        if let Some(name) = &call.type_name {
+            return Some(&name.text);
+        }
+        let element = call.instance.steps.iter().all(|step| matches!(step, Step::Index(..)));
+        match &call.instance.root {
+            Root::Name(name) if element => self.types.get(&name.key()).copied().flatten(),
+            _ => None,
+        }
     }
+
+    /// The function that a call calls, if it is one.
+    fn function(&self, call: &'a BlockCall) -> Option<&'a str> {
+        let name = call.instance.as_name().filter(|_| call.type_name.is_none())?;
+        let key = name.key();
+        let known = self.functions.contains(&key) || Function::from_name(&name.text).is_some();
+        (known && !self.types.contains_key(&key)).then_some(name.text.as_str())
+    }
+}
+
+/// What is known of the pins of a box.
+#[derive(Clone, Copy)]
+enum Powered {
+    /// Power goes through a function from EN to ENO.
+    Function,
+    /// A block says itself where power goes.
+    Block(StandardBlock),
+    /// Nothing.
+    Unknown,
 }
 
 /// The pins of both sides, those that power flows through first, then the block's own in their order, wired or
 /// not, then what else the call names.
 fn pins(
     call: &BlockCall,
-    block: Option<StandardBlock>,
+    powered: Powered,
     circuit_labels: Vec<String>,
     limits: Limits,
 ) -> (Vec<PinLabel>, Vec<PinLabel>) {
@@ -247,10 +290,18 @@ fn pins(
     };
     let is_bool = |pin: &&crate::ladder::library::Pin| pin.ty == crate::elementary::Elementary::Bool;
 
-    let power_in = block.map(|block| match block.inputs().iter().find(is_bool) {
-        Some(first) if !is_wired(&inputs, first.name) => first.name,
-        _ => "EN",
-    });
+    let block = match powered {
+        Powered::Block(block) => Some(block),
+        Powered::Function | Powered::Unknown => None,
+    };
+    let power_in = match powered {
+        Powered::Unknown => None,
+        Powered::Function => Some("EN"),
+        Powered::Block(block) => Some(match block.inputs().iter().find(is_bool) {
+            Some(first) if !is_wired(&inputs, first.name) => first.name,
+            _ => "EN",
+        }),
+    };
     let mut left = vec![pin(power_in.unwrap_or(""), String::new())];
     for input in block.map_or(&[][..], StandardBlock::inputs) {
         if Some(input.name) != power_in {
@@ -260,8 +311,11 @@ fn pins(
     left.extend(inputs.into_iter().map(|(name, wired)| pin(name, wired)));
 
     let chosen = call.power_output.as_ref().map(|name| name.text.as_str());
-    let power_out =
-        chosen.or_else(|| block.map(|block| block.outputs().iter().find(is_bool).map_or("ENO", |first| first.name)));
+    let power_out = chosen.or(match powered {
+        Powered::Unknown => None,
+        Powered::Function => Some("ENO"),
+        Powered::Block(block) => Some(block.outputs().iter().find(is_bool).map_or("ENO", |first| first.name)),
+    });
     let mut right = vec![pin(power_out.unwrap_or(""), String::new())];
     for output in block.map_or(&[][..], StandardBlock::outputs) {
         let carries_power = power_out.is_some_and(|power| power.eq_ignore_ascii_case(output.name));

@@ -22,14 +22,18 @@ const NUMBERS: &str = "①②③④⑤⑥⑦⑧⑨⑩⑪⑫⑬⑭⑮⑯⑰⑱⑲
 pub(super) fn render(page: &Page) -> String {
     let mut out = String::new();
     line(&mut out, &page.title);
-    table(&mut out, &page.declarations);
-    for rung in &page.rungs {
+    if !page.overview.is_empty() {
         line(&mut out, "");
-        heading(&mut out, rung);
-        match &rung.picture {
-            Ok(picture) => Canvas::of(picture).write(&mut out),
-            Err(note) => line(&mut out, note),
+    }
+    page.overview.iter().for_each(|text| line(&mut out, text));
+    table(&mut out, &page.globals);
+    for unit in &page.units {
+        if !unit.heading.is_empty() {
+            line(&mut out, "");
+            line(&mut out, &unit.heading);
         }
+        table(&mut out, &unit.declarations);
+        unit.rungs.iter().for_each(|picture| rung(&mut out, picture));
     }
     out
 }
@@ -37,6 +41,15 @@ pub(super) fn render(page: &Page) -> String {
 fn line(out: &mut String, text: &str) {
     out.push_str(text.trim_end());
     out.push('\n');
+}
+
+fn rung(out: &mut String, rung: &RungPicture) {
+    line(out, "");
+    heading(out, rung);
+    match &rung.picture {
+        Ok(picture) => Canvas::of(picture).write(out),
+        Err(note) => line(out, note),
+    }
 }
 
 fn heading(out: &mut String, rung: &RungPicture) {

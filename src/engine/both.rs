@@ -133,7 +133,9 @@ fn last_writers(program: &Program) -> Vec<Option<usize>> {
         for instruction in &program.instructions[program.section_range(section)] {
             match instruction.op {
                 Op::Store(slot, _) => writers[slot.index()] = Some(section),
-                Op::StoreIndexed(array, ..) => writers[program.layout.array(array).indices()].fill(Some(section)),
+                Op::StoreIndexed(array, ..) | Op::CopyArray(array, ..) => {
+                    writers[program.layout.array(array).indices()].fill(Some(section));
+                }
                 _ => {}
             }
         }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A chunk that [calls helpers](Chunk::calls_helpers) takes one argument more, behind the last base: a pointer to the
-//! table of them, such as [`HELPERS`](super::helpers::HELPERS).
+//! table of them: [`HELPERS`](super::helpers::HELPERS), and one at [`COPY`](super::helpers::COPY).
 //!
 //! Code is straight line: it must never branch on data, but for the operations in [`BRANCHING`]. Helpers do, and take
 //! a time that depends on their operands. It computes exactly what [`evaluate`](crate::logic::evaluate) says, with
@@ -46,6 +46,9 @@ pub const BASES: usize = 5;
 /// Values of a chunk that may wait for their use at one time. Cranelift's time grows with the square of their number,
 /// and the stack by 8 bytes with each, which the code does not probe. A rung of people has some ten.
 pub const ALIVE: usize = 4096;
+
+/// Bytes of an array up to which a copy is moves one after another; a longer one is a call of a helper.
+pub const MOVED: u32 = 1024;
 
 /// Why there is no code.
 #[derive(Debug)]
@@ -230,7 +233,11 @@ fn generate(context: &mut Context, isa: &dyn TargetIsa) -> CodegenResult<Compile
 /// Whether a chunk needs the table of helpers.
 fn calls_helpers(program: &Program, sections: Range<usize>) -> bool {
     let mut instructions = sections.flat_map(|section| &program.instructions[program.section_range(section)]);
-    instructions.any(|instruction| matches!(instruction.op, Op::Call(..)))
+    instructions.any(|instruction| match instruction.op {
+        Op::Call(..) => true,
+        Op::CopyArray(to, ..) => array::copy_is_called(program, to),
+        _ => false,
+    })
 }
 
 /// What a chunk's function takes.
@@ -296,19 +303,27 @@ struct Target {
     wide_loads: bool,
     /// Whether a select, and a rotation, becomes a branch, so that masks are wanted.
     select_branches: bool,
+    /// Whether 16 bytes can be moved at a time.
+    wide_moves: bool,
     /// How far below and above a pointer an access is short.
     below: u32,
     above: u32,
 }
 
 impl Target {
-    const RISCV64: Self = Self { wide_loads: false, select_branches: true, below: 2048, above: 2047 };
+    const RISCV64: Self =
+        Self { wide_loads: false, select_branches: true, wide_moves: false, below: 2048, above: 2047 };
 
     fn of(isa: &dyn TargetIsa) -> Self {
         match isa.triple().architecture {
-            Architecture::X86_64 => Self { wide_loads: true, select_branches: false, below: 128, above: 127 },
+            Architecture::X86_64 => {
+                Self { wide_loads: true, select_branches: false, wide_moves: true, below: 128, above: 127 }
+            }
             Architecture::Riscv64(_) => Self::RISCV64,
-            _ => Self { wide_loads: false, select_branches: false, below: 0, above: 4095 },
+            Architecture::Aarch64(_) => {
+                Self { wide_loads: false, select_branches: false, wide_moves: true, below: 0, above: 4095 }
+            }
+            _ => Self { wide_loads: false, select_branches: false, wide_moves: false, below: 0, above: 4095 },
         }
     }
 }

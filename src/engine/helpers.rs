@@ -1,10 +1,14 @@
 //! The table of helpers that compiled chunks call: C functions on LREALs, each computing what
-//! [`evaluate::helper`] says. Nothing may be computed here.
+//! [`evaluate::helper`] says, and behind them one that copies long arrays. Nothing may be computed here.
 
 use crate::logic::{Helper, evaluate};
 
 /// A helper as chunks call it. One that takes a single operand does not look at the second.
 pub type HelperFunction = extern "C" fn(f64, f64) -> f64;
+
+/// The place in the table of the function that copies long arrays, counted in pointers: behind the others. It is given
+/// two pointers, to and from as many bytes as a third number says, which are the same or apart.
+pub const COPY: usize = Helper::ALL.len();
 
 macro_rules! table {
     ($($name:ident)*) => { [$({
@@ -17,8 +21,8 @@ macro_rules! table {
 
 const FUNCTIONS: [(Helper, HelperFunction); Helper::ALL.len()] = table!(Ln Log10 Exp Sin Cos Tan Asin Acos Atan Power);
 
-/// What a chunk is given a pointer to, in the order of [`Helper::ALL`].
-pub static HELPERS: [HelperFunction; Helper::ALL.len()] = {
+/// The functions on LREALs, in the order of [`Helper::ALL`].
+pub const HELPERS: [HelperFunction; Helper::ALL.len()] = {
     let mut table = [FUNCTIONS[0].1; Helper::ALL.len()];
     let mut row = 0;
     while row < table.len() {

@@ -5,6 +5,7 @@
 //! gates, of which a whole run executes without a branch; loads, stores, constants and negations cost nothing of
 //! their own. All else becomes steps with cells as operands. Neither may know any block.
 
+mod access;
 mod gate;
 mod step;
 mod textbook;
@@ -13,22 +14,33 @@ mod translate;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use rung_runtime::Scan;
 
 pub use textbook::Textbook;
 
-use crate::logic::{Program, verify};
+use crate::logic::{Program, Turn, verify};
 use gate::Gate;
 use step::Step;
 
 /// A program, translated for fast interpretation. A scan expects every BOOL of the image to be 0 or 1.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
+    tasks: Vec<Part>,
     gates: Vec<Gate>,
     steps: Vec<Step>,
     /// The image; then the time; then the constants; then what is computed on the way, anew in each chunk.
     cells: Vec<u8>,
     image_size: usize,
+}
+
+/// A task: when it is due, and what is its.
+#[derive(Clone, Debug)]
+struct Part {
+    turn: Turn,
+    gates: Range<usize>,
+    steps: Range<usize>,
 }
 
 impl Interpreter {
@@ -46,18 +58,23 @@ impl Interpreter {
 
 impl Scan for Interpreter {
     fn scan(&mut self, image: &mut [u8], now: i64) {
-        let Self { gates, steps, cells, image_size } = self;
+        let Self { tasks, gates, steps, cells, image_size } = self;
         // Two copies of the image cost far less than telling two arrays apart at every operand.
         cells[..*image_size].copy_from_slice(&image[..*image_size]);
         cells[*image_size..*image_size + 8].copy_from_slice(&now.to_ne_bytes());
-        let mut gates = gates.as_slice();
-        for step in steps {
-            let (run, rest) = gates.split_at(step.gates_before as usize);
-            run.iter().for_each(|gate| gate.execute(cells));
-            gates = rest;
-            step.execute(cells);
+        for Part { turn, gates: own, steps: range } in tasks {
+            if !turn.take(cells, now) {
+                continue;
+            }
+            let mut gates = &gates[own.clone()];
+            for step in &steps[range.clone()] {
+                let (run, rest) = gates.split_at(step.gates_before as usize);
+                run.iter().for_each(|gate| gate.execute(cells));
+                gates = rest;
+                step.execute(cells);
+            }
+            gates.iter().for_each(|gate| gate.execute(cells));
         }
-        gates.iter().for_each(|gate| gate.execute(cells));
         image[..*image_size].copy_from_slice(&cells[..*image_size]);
     }
 }

@@ -1,4 +1,4 @@
-//! The JIT: every chunk of a program compiled for this machine and called in order.
+//! The JIT: every chunk of a program compiled for this machine, and those of the tasks that are due called in order.
 //!
 //! Code generation is [`clif`]'s; here it is installed and called, and nothing else.
 
@@ -6,6 +6,8 @@ mod memory;
 #[cfg(test)]
 mod tests;
 
+use std::io;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cranelift_codegen::isa::OwnedTargetIsa;
@@ -13,7 +15,7 @@ use rung_runtime::Scan;
 
 pub use super::clif::CompileError;
 use super::clif::{self, Chunk, Compiler};
-use crate::logic::Program;
+use crate::logic::{Program, Turn};
 use memory::Code;
 
 /// Cranelift's code generator for this machine, with all that its processor offers.
@@ -29,6 +31,8 @@ pub fn host_isa() -> Result<OwnedTargetIsa, CompileError> {
 /// A compiled program.
 #[derive(Debug)]
 pub struct Jit {
+    /// Each task: when it is due, and its chunks.
+    tasks: Vec<(Turn, Range<usize>)>,
     chunks: Vec<Chunk>,
     code: Code,
 }
@@ -42,8 +46,20 @@ impl Jit {
     pub fn compile(program: &Program) -> Result<Self, CompileError> {
         let isa = host_isa()?;
         let chunks = compile_chunks(program, &isa)?;
-        let code = Code::install(&chunks, program.layout.size() as usize).map_err(CompileError::Memory)?;
-        Ok(Self { chunks, code })
+        Self::install(program, chunks).map_err(CompileError::Memory)
+    }
+
+    /// Makes a program's chunks ready to run.
+    fn install(program: &Program, chunks: Vec<Chunk>) -> io::Result<Self> {
+        let code = Code::install(&chunks, program.layout.size() as usize)?;
+        let before = |section: usize| chunks.partition_point(|chunk| chunk.sections.start < section);
+        let tasks = (0..program.tasks.len())
+            .map(|task| {
+                let sections = program.task_range(task);
+                (Turn::of(&program.tasks[task], &program.layout), before(sections.start)..before(sections.end))
+            })
+            .collect();
+        Ok(Self { tasks, chunks, code })
     }
 
     /// Bytes of machine code, padding between chunks not counted.
@@ -92,6 +108,10 @@ fn compile_chunks(program: &Program, isa: &OwnedTargetIsa) -> Result<Vec<Chunk>,
 
 impl Scan for Jit {
     fn scan(&mut self, image: &mut [u8], now: i64) {
-        self.code.run(image, now);
+        for (turn, chunks) in &self.tasks {
+            if turn.take(image, now) {
+                self.code.run(chunks.clone(), image, now);
+            }
+        }
     }
 }

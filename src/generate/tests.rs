@@ -6,10 +6,10 @@ use crate::ladder::Step;
 /// A program in a notation of its own, so that these tests do not depend on the printer.
 fn drawn(program: &Program) -> String {
     let mut text = String::new();
-    for variable in &program.variables {
+    for variable in &program.units[0].variables {
         text += &format!("{:?} {}\n", variable.class, variable.name.text);
     }
-    for rung in &program.rungs {
+    for rung in &program.units[0].rungs {
         text += &circuit(&rung.circuit);
         text += "\n";
     }
@@ -34,7 +34,7 @@ fn drawn_element(element: &Element) -> String {
                     ..
                 },
             ] => {
-                format!(" {}:{}ms", call.instance.text, preset / 1_000_000)
+                format!(" {}:{}ms", call.instance.as_name().map_or("", |name| &name.text), preset / 1_000_000)
             }
             other => panic!("a timer has a preset only, not {other:?}"),
         },
@@ -60,7 +60,7 @@ fn root(reference: &Reference) -> String {
 /// Timers and contacts of a program.
 fn counts(program: &Program) -> (usize, usize) {
     let text = drawn(program);
-    let rungs = text.lines().skip(program.variables.len());
+    let rungs = text.lines().skip(program.units[0].variables.len());
     let words: Vec<&str> = rungs.flat_map(str::split_whitespace).collect();
     let timers = words.iter().filter(|word| word.contains(':')).count();
     let others = words.iter().filter(|word| word.starts_with('(') || matches!(**word, "[" | "]" | "|")).count();
@@ -101,8 +101,8 @@ fn equal_options_give_equal_programs_and_another_seed_another() {
 fn there_are_exactly_as_many_rungs_and_timers_as_asked_for() {
     for (rungs, timers) in [(0, 0), (1, 0), (1, 1), (2, 1), (7, 3), (18, 3), (1451, 246), (100, 100), (99, 98)] {
         let program = generate(&Options { rungs, timers, ..Options::default() }).unwrap();
-        assert_eq!((program.rungs.len(), counts(&program).0), (rungs as usize, timers as usize));
-        assert_eq!(program.variables.len(), (rungs + rungs.div_ceil(3)) as usize);
+        assert_eq!((program.units[0].rungs.len(), counts(&program).0), (rungs as usize, timers as usize));
+        assert_eq!(program.units[0].variables.len(), (rungs + rungs.div_ceil(3)) as usize);
     }
 }
 
@@ -120,11 +120,12 @@ fn contacts_in_a_rung_have_the_mean_asked_for() {
 fn every_variable_is_used_and_every_coil_written_once() {
     let program = generate(&Options { rungs: 100, timers: 10, contacts_per_rung: 1, ..Options::default() }).unwrap();
     let text = drawn(&program);
-    let rungs: Vec<&str> = text.lines().skip(program.variables.len()).flat_map(str::split_whitespace).collect();
+    let rungs: Vec<&str> =
+        text.lines().skip(program.units[0].variables.len()).flat_map(str::split_whitespace).collect();
     let coils: Vec<&str> = rungs.iter().filter_map(|word| word.strip_prefix('(')?.strip_suffix(')')).collect();
     let written: HashSet<&str> = coils.iter().copied().collect();
     assert_eq!(written.len(), coils.len());
-    for variable in &program.variables {
+    for variable in &program.units[0].variables {
         let name = variable.name.text.as_str();
         let is_read = rungs.iter().any(|word| word.trim_start_matches('/') == name);
         assert!(if variable.class == VariableClass::Input { is_read } else { written.contains(name) }, "{name}");
@@ -136,7 +137,7 @@ fn near_references_stay_near() {
     let options = Options { rungs: 2000, timers: 0, near_percent: 100, ..Options::default() };
     let program = generate(&options).unwrap();
     let text = drawn(&program);
-    for (rung, line) in text.lines().skip(program.variables.len()).enumerate() {
+    for (rung, line) in text.lines().skip(program.units[0].variables.len()).enumerate() {
         for word in line.split_whitespace().map(|word| word.trim_matches(['/', '(', ')'])) {
             let number = |prefix: &str| word.strip_prefix(prefix)?.parse::<usize>().ok();
             let from = number("i").map(|input| input * 3).or_else(|| number("q")).or_else(|| number("m"));

@@ -18,6 +18,8 @@ pub enum Class {
     Magnitude,
     /// The integers (ANY_INT).
     Integer,
+    /// Those and TIME.
+    Countable,
     /// REAL and LREAL (ANY_REAL).
     Real,
     /// BOOL and the bit strings (ANY_BIT).
@@ -35,6 +37,7 @@ impl Class {
             Self::Number => number,
             Self::Magnitude => number || matches!(ty, Time),
             Self::Integer => ty.is_integer(),
+            Self::Countable => ty.is_integer() || matches!(ty, Time),
             Self::Real => ty.is_real(),
             Self::Bits => ty.is_bit_string(),
             Self::WideBits => ty.is_bit_string() && !matches!(ty, Bool),
@@ -48,6 +51,7 @@ impl Class {
             Self::Number => "numbers",
             Self::Magnitude => "numbers and TIME",
             Self::Integer => "integers",
+            Self::Countable => "integers and TIME",
             Self::Real => "REAL and LREAL",
             Self::Bits => "BOOL and bit strings",
             Self::WideBits => "BYTE, WORD, DWORD and LWORD",
@@ -197,7 +201,7 @@ functions! {
     /// The quotient.
     Divide "DIV" Number ("IN1": T, "IN2": T) -> T;
     /// What the integer quotient leaves.
-    Modulo "MOD" Integer ("IN1": T, "IN2": T) -> T;
+    Modulo "MOD" Countable ("IN1": T, "IN2": T) -> T;
     /// The value itself.
     Move "MOVE" Any ("IN": T) -> T;
     /// Bits moved up.

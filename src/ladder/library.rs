@@ -1,9 +1,10 @@
 //! The standard function blocks: their names, pins and types.
 //!
 //! One entry a block, and its rule in one function of `lower`; nothing else must know what pins a block has.
-//! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5.
+//! What each block computes is said in the manual, from IEC 61131-3, 6.6.3.5, and for the register machine from the paper
+//! that its page names.
 
-use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Real, Time, Udint, Ulint};
+use crate::elementary::Elementary::{self, Bool, Dint, Int, Lint, Real, Time, Udint, Ulint, Usint, Word};
 use crate::elementary::Value;
 
 /// One input or output of a block.
@@ -26,7 +27,7 @@ pub struct Pin {
 pub enum Takes {
     /// A value.
     Value,
-    /// A constant, which has to be wired.
+    /// A as constant, which has to be wired.
     Constant,
     /// A variable, which the block reads and writes; or an element of an array, from which on it may use those behind it. It has
     /// to be wired.
@@ -70,16 +71,29 @@ macro_rules! takes {
     };
 }
 
-// A pin is its name and type; `= 1` is its default, `in 0 to 9` the range of its constants; then what else than a value it takes.
+// A pin is its name and type; `= 1` is its default, `in 0 to 9` the range of its constants; `as constant` or `as reference` what else than a value it takes.
+// Behind a semicolon stand pins that differ in nothing but the number behind their name.
 macro_rules! pins {
-    (($($name:literal: $ty:ident $(= $initial:literal)? $(in $least:literal to $greatest:literal)? $($takes:ident)?),*)) => {
-        &[$(Pin {
-            name: $name,
-            ty: $ty,
-            initial: or_zero!($($initial)?),
-            range: or_none!($($least $greatest)?),
-            takes: takes!($($takes)?),
-        }),*]
+    ((
+        $($name:literal: $ty:ident $(= $initial:literal)? $(in $least:literal to $greatest:literal)? $(as $takes:ident)?),*
+        $(; $series:literal $($number:literal)+: $series_ty:ident = $series_initial:literal)?
+    )) => {
+        &[
+            $(Pin {
+                name: $name,
+                ty: $ty,
+                initial: or_zero!($($initial)?),
+                range: or_none!($($least $greatest)?),
+                takes: takes!($($takes)?),
+            },)*
+            $($(Pin {
+                name: concat!($series, $number),
+                ty: $series_ty,
+                initial: $series_initial,
+                range: None,
+                takes: Takes::Value,
+            },)+)?
+        ]
     };
 }
 
@@ -155,6 +169,24 @@ blocks! {
     Ramp "RAMP": ("RUN": Bool, "X0": Real, "X1": Real, "TR": Time, "CYCLE": Time) => ("BUSY": Bool, "XOUT": Real);
     /// Two-point switch with a dead band.
     Hysteresis "HYSTERESIS": ("XIN1": Real, "XIN2": Real, "EPS": Real) => ("Q": Bool);
+    /// Timer of the register machine, in tenths of a second or in seconds.
+    Tt "TT", Ts "TS":
+        ("TIMING": Bool, "ENABLE": Bool = 1, "KIND": Usint in 0 to 3 as constant, "PRESET": Word in 0 to 9999)
+        => ("Q": Bool, "VALUE": Word);
+    /// Up counter of the register machine.
+    Uc "UC": ("COUNT": Bool, "ENABLE": Bool = 1, "PRESET": Word in 0 to 9999) => ("Q": Bool, "VALUE": Word);
+    /// Down counter of the register machine.
+    Dc "DC": ("COUNT": Bool, "ENABLE": Bool = 1, "PRESET": Word in 0 to 9999) => ("Q": Bool, "VALUE": Word);
+    /// Drum: an up counter with taps.
+    Dr "DR":
+        ("STEP": Bool, "ENABLE": Bool = 1, "PRESET": Word = 2047 in 0 to 2047; "TAP" 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16: Word = 65535)
+        => ("Q": Bool, "VALUE": Word; "Q" 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16: Bool = 0);
+    /// Shift register, towards the highest bit of the highest register or towards the lowest bit of the lowest.
+    Shiftl "SHIFTL", Shiftr "SHIFTR":
+        ("SHIFT": Bool, "DATA": Bool, "ENABLE": Bool = 1, "COUNT": Usint = 1 in 1 to 15, "REGISTER": Word as reference, "LENGTH": Usint in 1 to 32 as constant)
+        => ("Q": Bool);
+    /// Sets, or clears, a bit of a register.
+    Bs "BS", Bc "BC": ("IN": Bool, "REGISTER": Word as reference, "BIT": Usint in 0 to 15) => ("Q": Bool);
 }
 
 impl StandardBlock {

@@ -4,8 +4,8 @@
 //! that is for the passes.
 
 use super::{
-    ArrayId, Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Unary,
-    ValueId,
+    ArrayId, Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Task,
+    Unary, ValueId,
 };
 use crate::elementary::{Elementary, Value};
 
@@ -19,8 +19,14 @@ pub struct Builder {
 impl Builder {
     /// An empty program over an image.
     pub fn new(name: impl Into<String>, layout: Layout) -> Self {
-        let program =
-            Program { name: name.into(), layout, origins: Vec::new(), sections: Vec::new(), instructions: Vec::new() };
+        let program = Program {
+            name: name.into(),
+            layout,
+            origins: Vec::new(),
+            sections: Vec::new(),
+            tasks: Vec::new(),
+            instructions: Vec::new(),
+        };
         Self { program, chunk_sections: 0 }
     }
 
@@ -40,8 +46,21 @@ impl Builder {
         self.program.sections.push(Section { origin: origin_index, end, starts_chunk });
     }
 
-    /// The finished program. Instructions after the last section's end belong to none and are dropped.
+    /// Ends a task: all sections since the last one are its. With an interval, in nanoseconds, it has a slot of type TIME
+    /// for when it is due next. Values made so far must not be used after.
+    pub fn end_task(&mut self, name: impl Into<String>, interval: Option<i64>, due: Option<SlotId>) {
+        let end = index(self.program.sections.len());
+        self.program.tasks.push(Task { name: name.into(), interval, due, end });
+        self.chunk_sections = 0;
+    }
+
+    /// The finished program. Instructions after the last section's end belong to none and are dropped; sections after the
+    /// last task's end, as all are where none was asked for, belong to one more task without an interval.
     pub fn finish(mut self) -> Program {
+        let sections = index(self.program.sections.len());
+        if self.program.tasks.last().is_none_or(|task| task.end != sections) {
+            self.program.tasks.push(Task::always(sections));
+        }
         let end = self.program.sections.last().map_or(0, |section| section.end as usize);
         self.program.instructions.truncate(end);
         self.program
@@ -105,6 +124,13 @@ impl Builder {
     /// Sets the element of an array that a LINT names, from 0.
     pub fn store_indexed(&mut self, array: ArrayId, index: ValueId, value: ValueId) {
         self.push(self.element_type(array), Op::StoreIndexed(array, index, value));
+    }
+
+    /// Copies all elements of an array to another of the same type and count, while a condition, if there is one, is
+    /// TRUE.
+    pub fn copy_array(&mut self, to: ArrayId, from: ArrayId, condition: Option<ValueId>) {
+        let condition = condition.unwrap_or_else(|| self.bool(true));
+        self.push(self.element_type(to), Op::CopyArray(to, from, condition));
     }
 
     fn element_type(&self, array: ArrayId) -> Elementary {

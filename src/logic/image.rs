@@ -25,6 +25,9 @@ pub const TAIL_PADDING: u32 = 3;
 /// The alignment of an image's first byte and, in multiples, its size.
 pub const ALIGNMENT: u32 = 8;
 
+/// The name of the slot that tells of an index out of range, where a program has one: a BOOL that stays TRUE.
+pub const FAULT: &str = "#fault";
+
 /// The largest image, in bytes: 1 GiB.
 pub const MAXIMUM_SIZE: u32 = 1 << 30;
 
@@ -216,6 +219,12 @@ impl Layout {
     /// One array.
     pub fn array(&self, id: ArrayId) -> Array {
         self.arrays[id.index()]
+    }
+
+    /// The slot that is TRUE once an index was out of range; `None` where no index can be.
+    pub fn fault(&self) -> Option<SlotId> {
+        let place = self.slots.iter().position(|slot| slot.ty == Elementary::Bool && slot.name == FAULT)?;
+        u32::try_from(place).ok().map(SlotId)
     }
 
     /// What can be watched, in declaration order: the columns of a trace.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::image::{EarlierLayout, Extent, KeptSlot};
 use super::print::{area_name, area_of};
-use super::{Layout, Program};
+use super::{Array, Layout, Program, Task};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
 use crate::source::{Source, Span};
@@ -28,6 +28,11 @@ struct Map {
     size: u32,
     slots: Vec<MapSlot>,
     observed: Vec<MapObserved>,
+    /// Where these two are missing, an earlier version wrote the map.
+    #[serde(default)]
+    arrays: Vec<MapArray>,
+    #[serde(default)]
+    tasks: Vec<MapTask>,
     inputs: Vec<MapInputs>,
     outputs: Vec<[u32; 2]>,
     retained: Vec<[u32; 2]>,
@@ -50,6 +55,23 @@ struct MapSlot {
 struct MapObserved {
     name: String,
     slot: String,
+}
+
+/// Elements side by side: the name of the first slot, and how many there are.
+#[derive(Serialize, Deserialize)]
+struct MapArray {
+    first: String,
+    count: u32,
+}
+
+/// A task with a name or an interval, in the order in which those run that are due.
+#[derive(Serialize, Deserialize)]
+struct MapTask {
+    name: String,
+    /// In nanoseconds; `null` where it runs in every round.
+    interval: Option<i64>,
+    /// The name of the slot that holds when it is due next.
+    due: Option<String>,
 }
 
 /// Start and end of a run of inputs, and of the BOOLs in it.
@@ -83,6 +105,8 @@ pub fn write_map(program: &Program, source_name: &str) -> String {
             })
             .collect(),
         observed: observed(layout),
+        arrays: arrays(layout),
+        tasks: tasks(program),
         inputs: layout
             .inputs()
             .iter()
@@ -103,6 +127,20 @@ fn observed(layout: &Layout) -> Vec<MapObserved> {
         slot: layout.slot(observed.slot).name.clone(),
     };
     layout.observed().iter().map(of).collect()
+}
+
+fn arrays(layout: &Layout) -> Vec<MapArray> {
+    let of = |array: &Array| MapArray { first: layout.slot(array.first).name.clone(), count: array.count };
+    layout.arrays().iter().map(of).collect()
+}
+
+fn tasks(program: &Program) -> Vec<MapTask> {
+    let of = |task: &Task| MapTask {
+        name: task.name.clone(),
+        interval: task.interval,
+        due: task.due.map(|slot| program.layout.slot(slot).name.clone()),
+    };
+    program.tasks.iter().filter(|task| !task.is_plain()).map(of).collect()
 }
 
 /// The layout that a map tells, fit to be extended.
@@ -208,6 +246,8 @@ mod tests {
       "slot": "lamp"
     }
   ],
+  "arrays": [],
+  "tasks": [],
   "inputs": [
     {
       "bytes": [
@@ -240,6 +280,32 @@ mod tests {
             write_map(&program, "pump.rung"),
             expected.replace("HASH", &hash).replace("\"size\": 16", &format!("\"size\": {}", program.layout.size()))
         );
+    }
+
+    #[test]
+    fn arrays_and_tasks_are_told() {
+        let mut layout = LayoutBuilder::new();
+        let mut slot = |name: &str, ty, area| {
+            let (name, initial) = (name.to_owned(), Value::default_of(ty));
+            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+        };
+        let elements = ["a[1]", "a[2]"].map(|name| slot(name, Elementary::Int, Area::Memory));
+        let due = slot("#task fast", Elementary::Time, Area::State);
+        layout.array(elements[0], 2);
+        let mut builder = Builder::new("pump", layout.finish(None).unwrap());
+        builder.end_task("fast", Some(10_000_000), Some(due));
+        builder.end_task("", None, None);
+        let text = write_map(&builder.finish(), "x");
+        let map: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(map["arrays"], serde_json::json!([{ "first": "a[1]", "count": 2 }]));
+        let fast = serde_json::json!({ "name": "fast", "interval": 10_000_000, "due": "#task fast" });
+        assert_eq!(map["tasks"], serde_json::json!([fast]));
+        // The same from before there were arrays and tasks.
+        let mut earlier = map.clone();
+        for key in ["arrays", "tasks"] {
+            earlier.as_object_mut().unwrap().remove(key);
+        }
+        assert_eq!(read_map(&Source::new("map", earlier.to_string())), read_map(&Source::new("map", text)));
     }
 
     #[test]

@@ -28,7 +28,7 @@ impl fmt::Display for ValueId {
 /// One instruction: an operation and the type of its result.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Instruction {
-    /// The type of the result; of a store, which has none, the type that it stores.
+    /// The type of the result; of a store or copy, which has none, the type that it stores.
     pub ty: Elementary,
     /// What it does.
     pub op: Op,
@@ -61,19 +61,26 @@ pub enum Op {
     LoadIndexed(ArrayId, ValueId),
     /// Sets an array's element, counted from 0 by a LINT, to a value; where there is none, nothing.
     StoreIndexed(ArrayId, ValueId, ValueId),
+    /// Sets every element of the first array to that of the second, of the same type and count, while a BOOL is TRUE. The
+    /// arrays are the same, or share no slot.
+    CopyArray(ArrayId, ArrayId, ValueId),
 }
 
 impl Op {
-    /// Whether it has a result, which stores have not.
+    /// Whether it has a result, which stores and copies have not.
     pub fn has_value(self) -> bool {
-        !matches!(self, Self::Store(..) | Self::StoreIndexed(..))
+        !matches!(self, Self::Store(..) | Self::StoreIndexed(..) | Self::CopyArray(..))
     }
 
     /// The operands, in order.
     pub fn operands(self) -> impl Iterator<Item = ValueId> {
         let operands = match self {
             Self::Constant(_) | Self::Now | Self::Load(_) => [None, None, None],
-            Self::Store(_, a) | Self::Unary(_, a) | Self::Convert(a) | Self::LoadIndexed(_, a) => [Some(a), None, None],
+            Self::Store(_, a)
+            | Self::Unary(_, a)
+            | Self::Convert(a)
+            | Self::LoadIndexed(_, a)
+            | Self::CopyArray(_, _, a) => [Some(a), None, None],
             Self::Binary(_, a, b) | Self::Compare(_, a, b) | Self::StoreIndexed(_, a, b) => [Some(a), Some(b), None],
             Self::Select(a, b, c) => [Some(a), Some(b), Some(c)],
             Self::Call(_, a, b) => [Some(a), b, None],
@@ -95,6 +102,7 @@ impl Op {
             Self::Call(helper, a, b) => Self::Call(helper, map(a), b.map(map)),
             Self::LoadIndexed(array, a) => Self::LoadIndexed(array, map(a)),
             Self::StoreIndexed(array, a, b) => Self::StoreIndexed(array, map(a), map(b)),
+            Self::CopyArray(to, from, a) => Self::CopyArray(to, from, map(a)),
         }
     }
 }

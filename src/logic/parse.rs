@@ -5,8 +5,8 @@
 use super::image::{Extent, Observed};
 use super::print::{UNITS, area_of};
 use super::{
-    Array, ArrayId, Binary, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Unary,
-    ValueId, verify,
+    Array, ArrayId, Binary, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, Slot, SlotId, Task,
+    Unary, ValueId, verify,
 };
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
@@ -60,6 +60,7 @@ struct Reader {
     origins: Vec<(u32, Origin)>,
     chunk: bool,
     sections: Vec<Section>,
+    tasks: Vec<Task>,
     instructions: Vec<Instruction>,
 }
 
@@ -84,7 +85,11 @@ impl Reader {
             origins.push(origin);
         }
         let name = self.name.ok_or_else(|| vec!["there is no program line".to_owned()])?;
-        Ok(Program { name, layout, origins, sections: self.sections, instructions: self.instructions })
+        if self.tasks.is_empty() {
+            self.tasks.push(Task::always(0));
+        }
+        let Self { sections, tasks, instructions, .. } = self;
+        Ok(Program { name, layout, origins, sections, tasks, instructions })
     }
 
     fn line(&mut self, line: &mut Line<'_>) -> Result<(), Diagnostic> {
@@ -126,6 +131,11 @@ impl Reader {
                 line.keyword("count")?;
                 self.arrays.push(Array { first, count: line.number("")? });
             }
+            "task" => {
+                line.word()?;
+                let task = self.task(line)?;
+                self.tasks.push(task);
+            }
             "chunk" => {
                 line.word()?;
                 self.chunk = true;
@@ -141,6 +151,11 @@ impl Reader {
                 let (index, end) = (origin.0, length(&self.instructions));
                 self.origins.push(origin);
                 self.sections.push(Section { origin: index, end, starts_chunk: std::mem::take(&mut self.chunk) });
+                let end = length(&self.sections);
+                match self.tasks.last_mut() {
+                    Some(task) => task.end = end,
+                    None => self.tasks.push(Task::always(end)),
+                }
             }
             _ if word.starts_with('s') && !matches!(word, "store" | "store_indexed") => {
                 let slot = self.slot(line)?;
@@ -180,6 +195,19 @@ impl Reader {
         Ok(Slot { name: line.quoted()?, ty, offset, area, retain, initial, line: number })
     }
 
+    fn task(&self, line: &mut Line<'_>) -> Result<Task, Diagnostic> {
+        let mut task = Task { name: line.quoted()?, ..Task::always(length(&self.sections)) };
+        if line.peek() == Some("every") {
+            line.word()?;
+            task.interval = Some(line.literal(Elementary::Time)?.bits().cast_signed());
+        }
+        if line.peek() == Some("due") {
+            line.word()?;
+            task.due = Some(SlotId(line.number("s")?));
+        }
+        Ok(task)
+    }
+
     fn instruction(&self, line: &mut Line<'_>) -> Result<Instruction, Diagnostic> {
         if line.peek() == Some("store") {
             line.word()?;
@@ -194,6 +222,14 @@ impl Reader {
             let index = line.value()?;
             line.keyword(",")?;
             return Ok(Instruction { ty, op: Op::StoreIndexed(array, index, line.value()?) });
+        }
+        if line.peek() == Some("copy_array") {
+            line.word()?;
+            let (to, ty) = self.array_type(line)?;
+            line.keyword(",")?;
+            let (from, _) = self.array_type(line)?;
+            line.keyword(",")?;
+            return Ok(Instruction { ty, op: Op::CopyArray(to, from, line.value()?) });
         }
         if line.number("v")? as usize != self.instructions.len() {
             return Err(line.fault(format!("the next value is v{}", self.instructions.len())));
@@ -268,8 +304,8 @@ impl Reader {
     }
 }
 
-fn length(instructions: &[Instruction]) -> u32 {
-    u32::try_from(instructions.len()).unwrap_or(u32::MAX)
+fn length<T>(list: &[T]) -> u32 {
+    u32::try_from(list.len()).unwrap_or(u32::MAX)
 }
 
 /// A line that is read word by word.
@@ -482,6 +518,35 @@ section 1 line 15 "r20"
         assert_eq!(print(&small()), expected);
         assert_eq!(read(expected), Ok(small()));
         assert_eq!(read(&expected.replace('\n', "\r\n")), Ok(small()));
+    }
+
+    #[test]
+    fn tasks_stand_before_their_sections_also_those_without_any() {
+        let mut layout = LayoutBuilder::new();
+        let (ty, initial) = (Elementary::Time, Value::time(0));
+        let name = "#task fast".to_owned();
+        let due = layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
+        let mut builder = Builder::new("p", layout.finish(None).unwrap());
+        builder.end_task("none", None, None);
+        builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+        builder.end_task("fast", Some(10_000_000), Some(due));
+        builder.end_section(Origin { label: "r2".to_owned(), line: 2 });
+        builder.end_task("", None, None);
+        builder.end_task("last", None, None);
+        let program = builder.finish();
+        let text = print(&program);
+        let from = text.find("\ntask").unwrap() + 1;
+        let expected = r#"task "none"
+task "fast" every T#10ms due s0
+chunk
+section 0 line 1 "r1"
+task ""
+chunk
+section 1 line 2 "r2"
+task "last"
+"#;
+        assert_eq!(&text[from..], expected);
+        assert_eq!(read(&text), Ok(program));
     }
 
     #[test]

@@ -7,18 +7,19 @@
 //!   array a0 s0 count 1
 //!   inputs 0..1 bools 0..1
 //!   observe s0 "start"
+//! task "fast" every T#10ms due s1
 //! chunk
 //! section 0 line 5 "r10"
 //!   v0 = load s0 ; start
 //! ```
 //!
-//! One thing to a line; a semicolon starts a comment. It must print unverified programs, too, for those who look for
+//! A program whose only task is not named and runs in every round has no line for it. One thing to a line; a semicolon starts a comment. It must print unverified programs, too, for those who look for
 //! the fault in one; only verified ones can be parsed again.
 
 use std::fmt::{self, Write};
 
 use super::image::Observed;
-use super::{Area, Array, Op, Origin, Program, Slot, SlotId, ValueId};
+use super::{Area, Array, Op, Origin, Program, Slot, SlotId, Task, ValueId};
 use crate::elementary::{Elementary, Value, f32_of};
 
 /// The text of a program.
@@ -41,8 +42,16 @@ fn program_text(text: &mut String, program: &Program) -> fmt::Result {
     for (index, Origin { label, line }) in program.origins.iter().enumerate().filter(|(index, _)| !used[*index]) {
         writeln!(text, "origin {index} line {line} {}", Quoted(label))?;
     }
-    let mut place = 0;
-    for section in &program.sections {
+    let plain = matches!(program.tasks.as_slice(), [task] if task.is_plain());
+    let mut tasks = program.tasks.iter().filter(|_| !plain);
+    let (mut place, mut task_end) = (0, 0);
+    for (index, section) in program.sections.iter().enumerate() {
+        while task_end <= index
+            && let Some(next) = tasks.next()
+        {
+            task(text, next)?;
+            task_end = next.end as usize;
+        }
         if section.starts_chunk {
             writeln!(text, "chunk")?;
         }
@@ -56,7 +65,18 @@ fn program_text(text: &mut String, program: &Program) -> fmt::Result {
             place += 1;
         }
     }
-    Ok(())
+    tasks.try_for_each(|next| task(text, next))
+}
+
+fn task(text: &mut String, Task { name, interval, due, .. }: &Task) -> fmt::Result {
+    write!(text, "task {}", Quoted(name))?;
+    if let Some(interval) = interval {
+        write!(text, " every {}", Literal(Value::time(*interval)))?;
+    }
+    if let Some(due) = due {
+        write!(text, " due {due}")?;
+    }
+    writeln!(text)
 }
 
 fn image(text: &mut String, program: &Program) -> fmt::Result {
@@ -95,6 +115,7 @@ fn instruction(text: &mut String, program: &Program, place: usize) -> fmt::Resul
     match instruction.op {
         Op::Store(slot, a) => writeln!(text, "  store {slot}, {a} ; {}", Escaped(comment(slot))),
         Op::StoreIndexed(array, index, a) => writeln!(text, "  store_indexed {array}, {index}, {a}"),
+        Op::CopyArray(to, from, condition) => writeln!(text, "  copy_array {to}, {from}, {condition}"),
         op => {
             write!(text, "  v{place} = ")?;
             match op {
@@ -102,7 +123,7 @@ fn instruction(text: &mut String, program: &Program, place: usize) -> fmt::Resul
                 Op::Now => writeln!(text, "now"),
                 Op::Load(slot) => writeln!(text, "load {slot} ; {}", Escaped(comment(slot))),
                 Op::LoadIndexed(array, index) => writeln!(text, "load_indexed {array}, {index}"),
-                Op::Store(..) | Op::StoreIndexed(..) => Ok(()),
+                Op::Store(..) | Op::StoreIndexed(..) | Op::CopyArray(..) => Ok(()),
                 Op::Unary(op, a) => writeln!(text, "{} {ty} {a}", op.mnemonic()),
                 Op::Binary(op, a, b) => writeln!(text, "{} {ty} {a}, {b}", op.mnemonic()),
                 Op::Compare(op, a, b) => writeln!(text, "{} {} {a}, {b}", op.mnemonic(), ty_of(a)),

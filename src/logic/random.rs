@@ -1,23 +1,31 @@
 //! Random verified programs and images, for testing engines against each other.
 //!
-//! Every operation occurs on every type that it takes, with extreme constants, several chunks, and loads and stores
-//! that hit the same few slots over and over. The same seed gives the same program. Not for users.
+//! Every operation occurs on every type that it takes, with extreme constants, several chunks and tasks, and loads and
+//! stores that hit the same few slots over and over. The same seed gives the same program. Not for users.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::image::LayoutBuilder;
-use super::{Area, ArrayId, Binary, Builder, Compare, Helper, Layout, Origin, Program, Slot, SlotId, Unary, ValueId};
+use super::{
+    Area, Array, ArrayId, Binary, Builder, Compare, Helper, Layout, Origin, Program, Slot, SlotId, Unary, ValueId,
+};
 use crate::elementary::{Elementary, Value};
 
 /// A program of up to a few hundred instructions over up to forty slots.
 pub fn program(seed: u64) -> Program {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let layout = layout(&mut rng);
+    let (layout, mut due) = layout(&mut rng);
     let mut generator = Generator { builder: Builder::new(format!("random_{seed}"), layout), live: Vec::new(), rng };
     let mut starts = Vec::new();
     for section in 0..generator.rng.random_range(1..=12) {
-        let start = section == 0 || generator.rng.random_bool(0.25);
+        let ends_task = section > 0 && generator.rng.random_bool(0.15);
+        if ends_task {
+            let slot = due.pop();
+            let interval = slot.map(|_| pick(&mut generator.rng, &[1, 7, 10_000_000, 1 << 40, i64::MAX]));
+            generator.builder.end_task(format!("t{section}"), interval, slot);
+        }
+        let start = section == 0 || ends_task || generator.rng.random_bool(0.25);
         if start {
             generator.live.clear();
         }
@@ -52,7 +60,8 @@ pub fn now(seed: u64) -> i64 {
     Value::bits(value(&mut Pcg64::seed_from_u64(seed), Elementary::Time)).cast_signed()
 }
 
-fn layout(rng: &mut Pcg64) -> Layout {
+/// A layout, and the slots in which tasks keep when they are due.
+fn layout(rng: &mut Pcg64) -> (Layout, Vec<SlotId>) {
     let mut layout = LayoutBuilder::new();
     let count = rng.random_range(4..40);
     for index in 0..count {
@@ -74,16 +83,35 @@ fn layout(rng: &mut Pcg64) -> Layout {
     for index in 0..rng.random_range(1..4) {
         let ty = if rng.random_bool(0.3) { Elementary::Bool } else { pick(rng, &Elementary::ALL) };
         let (area, retain) = (pick(rng, &[Area::Output, Area::Memory]), rng.random_bool(0.3));
-        let elements = rng.random_range(1..6_u32);
-        let slots: Vec<SlotId> = (0..elements)
-            .map(|element| {
-                let (name, initial) = (format!("array{index}[{element}]"), value(rng, ty));
-                layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line: count + index })
-            })
-            .collect();
-        layout.array(slots[0], elements);
+        // Mostly small, so that indices hit them; some so long that engines copy them in another way.
+        let most = match rng.random_range(0..50) {
+            0 => 300,
+            1..10 => 40,
+            _ => 6,
+        };
+        let elements = rng.random_range(1..most);
+        // Two alike, so that one can be copied to the other; of some, a part is an array, too.
+        for copy in ["", "'"] {
+            let slots: Vec<SlotId> = (0..elements)
+                .map(|element| {
+                    let (name, initial) = (format!("array{index}{copy}[{element}]"), value(rng, ty));
+                    layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line: count + index })
+                })
+                .collect();
+            layout.array(slots[0], elements);
+            if rng.random_bool(0.3) {
+                let from = rng.random_range(0..elements);
+                layout.array(slots[from as usize], rng.random_range(1..=elements - from));
+            }
+        }
     }
-    layout.finish(None).unwrap_or_else(|_| unreachable!("so few slots fit"))
+    let due = (0..2)
+        .map(|task| {
+            let (name, ty, area, initial) = (format!("#task {task}"), Elementary::Time, Area::State, Value::time(0));
+            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+        })
+        .collect();
+    (layout.finish(None).unwrap_or_else(|_| unreachable!("so few slots fit")), due)
 }
 
 fn pick<T: Copy>(rng: &mut Pcg64, from: &[T]) -> T {
@@ -115,12 +143,16 @@ struct Generator {
 impl Generator {
     fn instruction(&mut self, boolean: bool) {
         let ty = if boolean { Elementary::Bool } else { pick(&mut self.rng, &Elementary::ALL) };
-        let made = match self.rng.random_range(0..11) {
+        let made = match self.rng.random_range(0..12) {
             0 => {
                 if let Some(slot) = self.slot(ty) {
                     let value = self.operand(ty);
                     self.builder.store(slot, value);
                 }
+                return;
+            }
+            11 => {
+                self.copy();
                 return;
             }
             10 => {
@@ -175,6 +207,22 @@ impl Generator {
             }
         };
         self.live.push(made);
+    }
+
+    /// A copy from any array that fits to another.
+    fn copy(&mut self) {
+        let layout = self.builder.layout();
+        let arrays: Vec<(u32, Array)> = (0..).zip(layout.arrays().iter().copied()).collect();
+        let ty = |array: Array| layout.slot(array.first).ty;
+        let fits = |a: Array, b: Array| {
+            let apart = a.slots().end <= b.first || b.slots().end <= a.first;
+            ty(a) == ty(b) && a.count == b.count && (a == b || apart)
+        };
+        let to = pick(&mut self.rng, &arrays);
+        let from: Vec<u32> = arrays.iter().filter(|(_, from)| fits(to.1, *from)).map(|(index, _)| *index).collect();
+        let from = pick(&mut self.rng, &from);
+        let condition = self.rng.random_bool(0.8).then(|| self.operand(Elementary::Bool));
+        self.builder.copy_array(ArrayId(to.0), ArrayId(from), condition);
     }
 
     /// A value of a type: one of the last ones of this chunk, or what a slot holds, or a constant.
@@ -244,6 +292,7 @@ mod tests {
                     Op::Load(_) => ("load", instruction.ty),
                     Op::LoadIndexed(..) => ("load_indexed", instruction.ty),
                     Op::StoreIndexed(..) => ("store_indexed", instruction.ty),
+                    Op::CopyArray(..) => ("copy_array", instruction.ty),
                     Op::Store(..) => ("store", instruction.ty),
                     Op::Constant(_) => ("constant", instruction.ty),
                     Op::Now => ("now", instruction.ty),
@@ -255,7 +304,7 @@ mod tests {
         expected.extend(Binary::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Compare::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Helper::ALL.iter().map(|helper| (helper.mnemonic(), helper.domain())));
-        expected.extend(["load_indexed", "store_indexed"].map(|name| (name, Domain::Any)));
+        expected.extend(["load_indexed", "store_indexed", "copy_array"].map(|name| (name, Domain::Any)));
         expected.extend(["select", "convert", "load", "store", "constant"].map(|name| (name, Domain::Any)));
         for (name, domain) in expected {
             for ty in Elementary::ALL.into_iter().filter(|ty| domain.contains(*ty)) {

@@ -5,14 +5,18 @@
 //! - the layout is sound: aligned slots inside the image that do not overlap, unique names, initial values of their
 //!   slots' types, observed slots that exist, runs that cover their slots, tail padding
 //!   (see [`Layout::problems`](super::Layout::problems));
-//! - sections are in order and together cover all instructions, their origins exist, and the first starts a chunk;
+//! - sections are in order and together cover all instructions, and their origins exist;
+//! - there is a task, tasks are in order and together cover all sections, and the first section of each starts a chunk;
+//! - a task has an interval above 0 and a slot of type TIME that no other task has, or neither;
 //! - every operand is defined before, in the same chunk, and not by a store, which has no value;
 //! - every slot or array that is loaded or stored exists and has the instruction's type, and a stored value has it too;
+//! - arrays of which one is copied to the other have one type and count, and are the same or share no slot;
 //! - an index is a LINT, and constants are in register form;
 //! - the types of operands and results are those of the op table, and of [`Op`]'s description.
 //!
 //! It must never panic, whatever the program.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use super::{ArrayId, Instruction, Op, Program, SlotId, ValueId};
@@ -54,9 +58,6 @@ pub fn verify(program: &Program) -> Result<(), Vec<Problem>> {
         if section.origin as usize >= program.origins.len() {
             problem(format!("section {index} has the origin {}, which there is not", section.origin));
         }
-        if index == 0 && !section.starts_chunk {
-            problem("the first section does not start a chunk".to_owned());
-        }
         if section.starts_chunk {
             chunk_start = start;
         }
@@ -71,7 +72,40 @@ pub fn verify(program: &Program) -> Result<(), Vec<Problem>> {
         let message = format!("the sections end at {start}, before the instructions do");
         problems.push(Problem { instruction: None, message });
     }
+    problems.extend(tasks(program).into_iter().map(|message| Problem { instruction: None, message }));
     if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn tasks(program: &Program) -> Vec<String> {
+    let mut problems = Vec::new();
+    let (mut start, mut slots) = (0, HashSet::new());
+    for (index, task) in program.tasks.iter().enumerate() {
+        let end = task.end as usize;
+        if end < start || end > program.sections.len() {
+            problems.push(format!("task {index} cannot end at {end}"));
+            return problems;
+        }
+        if end > start && !program.sections[start].starts_chunk {
+            problems.push(format!("the first section of task {index} does not start a chunk"));
+        }
+        match (task.interval, task.due) {
+            (None, None) => {}
+            (Some(interval), _) if interval <= 0 => problems.push(format!("task {index} has the interval {interval}")),
+            (Some(_), Some(due)) => match program.layout.slots().get(due.index()) {
+                Some(slot) if slot.ty == Elementary::Time && slots.insert(due) => {}
+                Some(_) => problems.push(format!("task {index} cannot keep when it is due in {due}")),
+                None => problems.push(format!("task {index} has {due}, which does not exist")),
+            },
+            (Some(_), None) | (None, Some(_)) => {
+                problems.push(format!("task {index} has not both, an interval and a slot for when it is due"));
+            }
+        }
+        start = end;
+    }
+    if program.tasks.is_empty() || start != program.sections.len() {
+        problems.push(format!("the tasks end at {start}, before the sections do"));
+    }
+    problems
 }
 
 fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<(), String> {
@@ -112,6 +146,17 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Store(to, a) => slot(to).and(expect(a, ty)),
         Op::LoadIndexed(from, index) => array(from).and(expect(index, Elementary::Lint)),
         Op::StoreIndexed(to, index, a) => array(to).and(expect(index, Elementary::Lint)).and(expect(a, ty)),
+        Op::CopyArray(to, from, condition) => {
+            array(to).and(array(from)).and(expect(condition, Elementary::Bool))?;
+            let [a, b] = [to, from].map(|id| program.layout.array(id));
+            if a.count != b.count {
+                Err(format!("{to} has {} elements, but {from} has {}", a.count, b.count))
+            } else if a != b && a.first < b.slots().end && b.first < a.slots().end {
+                Err(format!("{to} and {from} share slots"))
+            } else {
+                Ok(())
+            }
+        }
         Op::Unary(op, a) => takes(op.mnemonic(), op.domain()).and(expect(a, ty)),
         Op::Binary(op, a, b) => {
             let second = if op.takes_amount() { Elementary::Udint } else { ty };
@@ -135,12 +180,12 @@ mod tests {
     use super::*;
     use crate::elementary::Value;
     use crate::logic::image::LayoutBuilder;
-    use crate::logic::{Area, Binary, Builder, Compare, Helper, Origin, Slot, random};
+    use crate::logic::{Area, Binary, Builder, Compare, Helper, Origin, Slot, Task, random};
 
     /// v0 = load s0, v1 = load s1, v2 = and v0 v0, v3 = store s0 v2 | v4 = lt v1 v1 in two sections.
     fn program() -> Program {
         let mut layout = LayoutBuilder::new();
-        for (name, ty) in [("a", Elementary::Bool), ("n", Elementary::Int)] {
+        for (name, ty) in [("a", Elementary::Bool), ("n", Elementary::Int), ("due", Elementary::Time)] {
             let initial = Value::default_of(ty);
             let slot =
                 Slot { name: name.to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
@@ -183,7 +228,7 @@ mod tests {
             (4, Elementary::Bool, Op::Compare(Compare::Less, v(0), v(1)), "v4: v1 is INT, but BOOL belongs here"),
             (4, int, Op::Select(v(1), v(1), v(1)), "v4: v1 is INT, but BOOL belongs here"),
             (4, int, Op::Load(SlotId(0)), "v4: s0 is BOOL, but INT belongs here"),
-            (4, int, Op::Load(SlotId(2)), "v4: s2 does not exist"),
+            (4, int, Op::Load(SlotId(3)), "v4: s3 does not exist"),
             (4, int, Op::Store(SlotId(1), v(0)), "v4: v0 is BOOL, but INT belongs here"),
             (4, int, Op::Constant(0xFFFF), "v4: 0xffff is no INT in register form"),
             (4, int, Op::Call(Helper::Sin, v(1), None), "v4: sin does not take INT"),
@@ -191,12 +236,68 @@ mod tests {
             (4, Elementary::Real, Op::Call(Helper::Sin, v(1), Some(v(1))), "v4: sin takes one operand"),
             (4, Elementary::Real, Op::Call(Helper::Power, v(1), None), "v4: pow takes two operands"),
             (4, int, Op::LoadIndexed(ArrayId(0), v(1)), "v4: a0 does not exist"),
+            (4, int, Op::CopyArray(ArrayId(0), ArrayId(0), v(0)), "v4: a0 does not exist"),
             (4, int, Op::Now, "v4: the result is INT, but TIME belongs here"),
         ];
         for (place, ty, op, expected) in cases {
             let messages = message_of(|program| program.instructions[place] = Instruction { ty, op });
             assert!(messages.iter().any(|message| message == expected), "{messages:?} lacks {expected}");
         }
+    }
+
+    #[test]
+    fn copies_between_arrays_that_do_not_fit_are_named() {
+        let mut layout = LayoutBuilder::new();
+        for index in 0..6 {
+            let ty = if index < 4 { Elementary::Int } else { Elementary::Bool };
+            let (name, initial) = (format!("x{index}"), Value::default_of(ty));
+            layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
+        }
+        for (first, count) in [(0, 2), (2, 2), (1, 2), (2, 1), (4, 2), (0, 2)] {
+            layout.array(SlotId(first), count);
+        }
+        let layout = layout.finish(None).unwrap();
+        let cases = [
+            (1, None),
+            (0, None),
+            (5, None),
+            (2, Some("v1: a0 and a2 share slots")),
+            (3, Some("v1: a0 has 2 elements, but a3 has 1")),
+            (4, Some("v1: s4 is BOOL, but INT belongs here")),
+        ];
+        for (from, expected) in cases {
+            let mut builder = Builder::new("p", layout.clone());
+            builder.copy_array(ArrayId(0), ArrayId(from), None);
+            builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+            let problems = verify(&builder.finish()).err().unwrap_or_default();
+            let messages: Vec<String> = problems.iter().map(Problem::to_string).collect();
+            assert_eq!(messages, expected.into_iter().collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn broken_tasks_are_named() {
+        let task = |interval, due, end| Task { name: "t".to_owned(), interval, due, end };
+        let both = Some(SlotId(2));
+        let cases = [
+            (vec![], "the tasks end at 0, before the sections do"),
+            (vec![task(None, None, 1)], "the tasks end at 1, before the sections do"),
+            (vec![task(None, None, 3)], "task 0 cannot end at 3"),
+            (vec![task(None, None, 2), task(None, None, 1)], "task 1 cannot end at 1"),
+            (vec![task(None, None, 1), task(None, None, 2)], "the first section of task 1 does not start a chunk"),
+            (vec![task(Some(0), both, 2)], "task 0 has the interval 0"),
+            (vec![task(Some(5), None, 2)], "task 0 has not both, an interval and a slot for when it is due"),
+            (vec![task(None, both, 2)], "task 0 has not both, an interval and a slot for when it is due"),
+            (vec![task(Some(5), Some(SlotId(9)), 2)], "task 0 has s9, which does not exist"),
+            (vec![task(Some(5), Some(SlotId(1)), 2)], "task 0 cannot keep when it is due in s1"),
+            (vec![task(Some(5), both, 2), task(Some(5), both, 2)], "task 1 cannot keep when it is due in s2"),
+        ];
+        for (tasks, expected) in cases {
+            assert_eq!(message_of(|program| program.tasks.clone_from(&tasks)), [expected]);
+        }
+        let mut program = program();
+        program.tasks = vec![task(None, None, 0), task(Some(5), both, 2), task(None, None, 2)];
+        assert_eq!(verify(&program), Ok(()));
     }
 
     #[test]
@@ -213,7 +314,7 @@ mod tests {
         );
         assert_eq!(
             message_of(|program| program.sections[0].starts_chunk = false),
-            ["the first section does not start a chunk"]
+            ["the first section of task 0 does not start a chunk"]
         );
         assert_eq!(message_of(|program| program.sections[1].starts_chunk = true), ["v4: v1 is of an earlier chunk"]);
     }

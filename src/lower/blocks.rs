@@ -1,20 +1,20 @@
 //! Function blocks: each block's rule, written once over its pins and states.
 //!
 //! A rule computes as if the block always ran. That a block whose EN is FALSE, or that a jump leaves out, keeps its
-//! outputs and states is added here, so that no rule needs to know.
+//! outputs and states is added here, so that no rule needs to know; nor that it may be an element of an array.
 
 mod analog;
 mod bistables;
 mod counters;
 mod edges;
+mod register_machine;
 mod timers;
 
-use super::Lowering;
-use super::slots::InstanceSlots;
-use crate::check::{Call, Callee, Output, Wire};
-use crate::elementary::Elementary;
+use super::cell::{Cell, Pick};
+use super::storage::{BlockCells, Cells};
+use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
-use crate::logic::{Builder, SlotId, ValueId};
+use crate::logic::{Builder, ValueId};
 
 /// What a block computes.
 pub(super) struct Rule {
@@ -28,8 +28,18 @@ pub(super) struct Rule {
 type Rules = &'static [(&'static [StandardBlock], Rule)];
 
 /// The rule of each block, in the order of [`StandardBlock::ALL`]. A block without one, or with two, does not compile.
-static RULES: [&Rule; StandardBlock::ALL.len()] =
-    ordered(&[analog::RULES, bistables::RULES, counters::RULES, edges::RULES, timers::RULES]);
+static RULES: [&Rule; StandardBlock::ALL.len()] = ordered(&[
+    analog::RULES,
+    bistables::RULES,
+    counters::RULES,
+    edges::RULES,
+    timers::RULES,
+    register_machine::bits::RULES,
+    register_machine::counters::RULES,
+    register_machine::drum::RULES,
+    register_machine::shifts::RULES,
+    register_machine::timers::RULES,
+]);
 
 /// The rule of a block.
 pub(super) fn rule(block: StandardBlock) -> &'static Rule {
@@ -66,40 +76,97 @@ const fn ordered(files: &[Rules]) -> [&'static Rule; StandardBlock::ALL.len()] {
 pub(super) struct Run<'a> {
     /// The instructions so far.
     pub(super) logic: &'a mut Builder,
-    slots: &'a InstanceSlots,
-    inputs: Vec<ValueId>,
+    cells: &'a BlockCells,
+    /// Which element of these it is.
+    pick: Pick,
+    inputs: &'a [Wired],
     /// What it runs under, if it does not always run: EN, and that no jump leaves it out.
     runs: Option<ValueId>,
 }
 
-impl Run<'_> {
-    /// The value on an input.
+/// What an input gets.
+#[derive(Clone, Copy)]
+pub(super) enum Wired {
+    /// A value, which is this one wherever it is constant.
+    Value(ValueId, Option<Value>),
+    /// The variable that a reference names.
+    Reference(Cell),
+}
+
+impl<'a> Run<'a> {
+    /// A run of the block that lies there, with something at each of its inputs.
+    pub(super) fn new(
+        logic: &'a mut Builder,
+        cells: &'a BlockCells,
+        pick: Pick,
+        inputs: &'a [Wired],
+        runs: Option<ValueId>,
+    ) -> Self {
+        Self { logic, cells, pick, inputs, runs }
+    }
+
+    /// The value on an input that is no reference.
     pub(super) fn input(&self, pin: usize) -> ValueId {
-        self.inputs[pin]
+        match self.inputs[pin] {
+            Wired::Value(value, _) => value,
+            Wired::Reference(_) => unreachable!("a rule knows which of its pins are references"),
+        }
+    }
+
+    /// The value on an input that takes constants only.
+    pub(super) fn constant(&self, pin: usize) -> Value {
+        match self.inputs[pin] {
+            Wired::Value(_, Some(value)) => value,
+            _ => unreachable!("checking lets only constants be wired to such a pin"),
+        }
+    }
+
+    /// What the variable holds that a reference names, or the element of its array that many places behind it; the type's
+    /// default where there is none.
+    pub(super) fn register(&mut self, pin: usize, behind: u32) -> ValueId {
+        let cell = self.reference(pin, behind);
+        cell.load(self.logic)
+    }
+
+    /// Sets that variable; where there is none, nothing.
+    pub(super) fn set_register(&mut self, pin: usize, behind: u32, value: ValueId) {
+        let cell = self.reference(pin, behind);
+        cell.store(self.logic, self.runs, value);
+    }
+
+    fn reference(&mut self, pin: usize, behind: u32) -> Cell {
+        match self.inputs[pin] {
+            Wired::Reference(cell) => cell.behind(self.logic, behind),
+            Wired::Value(..) => unreachable!("a rule knows which of its pins are references"),
+        }
     }
 
     /// What an output holds.
     pub(super) fn output(&mut self, pin: usize) -> ValueId {
-        self.logic.load(self.slots.outputs[pin])
+        self.get(self.cells.outputs[pin])
     }
 
     /// What a state holds.
     pub(super) fn state(&mut self, state: usize) -> ValueId {
-        self.logic.load(self.slots.states[state])
+        self.get(self.cells.states[state])
     }
 
     /// Sets an output.
     pub(super) fn set_output(&mut self, pin: usize, value: ValueId) {
-        self.set(self.slots.outputs[pin], value);
+        self.set(self.cells.outputs[pin], value);
     }
 
     /// Sets a state.
     pub(super) fn set_state(&mut self, state: usize, value: ValueId) {
-        self.set(self.slots.states[state], value);
+        self.set(self.cells.states[state], value);
     }
 
-    fn set(&mut self, slot: SlotId, value: ValueId) {
-        self.logic.store_if(self.runs, slot, value);
+    fn get(&mut self, cells: Cells) -> ValueId {
+        Cell { cells, pick: self.pick }.load(self.logic)
+    }
+
+    fn set(&mut self, cells: Cells, value: ValueId) {
+        Cell { cells, pick: self.pick }.store(self.logic, self.runs, value);
     }
 
     /// Whether a signal has become TRUE since the block last ran, by a BOOL state that follows it.
@@ -109,57 +176,4 @@ impl Run<'_> {
         let was_off = self.logic.not(before);
         self.logic.and(signal, was_off)
     }
-}
-
-impl Lowering<'_> {
-    /// A call; gives the power on its right.
-    pub(super) fn call(&mut self, call: &Call, left: ValueId, nodes: &mut Vec<Option<ValueId>>) -> ValueId {
-        let Callee::Standard(block, instance) = &call.callee else { return left };
-        let slots = self.slots.instance(instance.variable);
-        let mut wired = vec![None; slots.inputs.len()];
-        let mut wire = |lowering: &mut Self, pin: usize, value: ValueId| {
-            wired[pin] = Some(value);
-            if let Some(slot) = slots.inputs[pin] {
-                lowering.store(slot, value);
-            }
-        };
-        if let Some(pin) = call.power_input {
-            wire(self, pin, left);
-        }
-        for input in &call.inputs {
-            let value = match &input.wire {
-                Wire::Value(expression) => self.expression(expression),
-                Wire::Circuit(circuit) => {
-                    let rail = self.logic.bool(true);
-                    self.circuit(circuit, rail, nodes)
-                }
-            };
-            wire(self, input.pin, value);
-        }
-        let inputs = wired.iter().zip(&slots.inputs).map(|(wired, slot)| match (wired, slot) {
-            (_, Some(slot)) => self.logic.load(*slot),
-            (Some(value), None) => *value,
-            (None, None) => unreachable!("an input that a call leaves unwired has a slot"),
-        });
-        let inputs = inputs.collect();
-        let enable = if call.power_input.is_none() { Some(left) } else { None };
-        let runs = self.unless_jumped(enable);
-        (rule(*block).run)(&mut Run { logic: &mut self.logic, slots, inputs, runs });
-        for (pin, target) in &call.outputs {
-            let value = self.logic.load(slots.outputs[output(*pin)]);
-            match enable {
-                None => self.write(target, value),
-                Some(enable) => self.write_if(enable, target, value),
-            }
-        }
-        match call.power_output {
-            Output::Pin(pin) => self.logic.load(slots.outputs[pin]),
-            // ENO, which is TRUE for a block that always runs.
-            Output::Eno => enable.unwrap_or_else(|| self.logic.bool(true)),
-        }
-    }
-}
-
-fn output(output: Output) -> usize {
-    if let Output::Pin(pin) = output { pin } else { 0 }
 }

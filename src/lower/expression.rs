@@ -1,9 +1,10 @@
-//! Expressions and places to primitives.
+//! Expressions to primitives. Every operand is computed.
 
 use super::Lowering;
-use crate::check::{Expression, ExpressionKind, Place};
+use crate::check::{Expression, ExpressionKind};
 use crate::elementary::Value;
 use crate::ladder::{BinaryOperator, UnaryOperator};
+use crate::logic::evaluate;
 use crate::logic::{Binary, Compare, Unary, ValueId};
 
 impl Lowering<'_> {
@@ -12,7 +13,6 @@ impl Lowering<'_> {
         match &expression.kind {
             ExpressionKind::Constant(value) => self.logic.constant(*value),
             ExpressionKind::Read(place) => self.read(place),
-            ExpressionKind::UserCall { .. } => self.logic.constant(Value::default_of(expression.ty)),
             ExpressionKind::Unary(operator, operand) => {
                 let operand = self.expression(operand);
                 self.logic.unary(unary(*operator), operand)
@@ -28,52 +28,39 @@ impl Lowering<'_> {
                 let operand = self.expression(operand);
                 self.logic.convert(operand, expression.ty)
             }
+            ExpressionKind::UserCall { unit, arguments, references } => self.operand(*unit, arguments, references),
             ExpressionKind::Call { function, arguments } => self.function(*function, expression.ty, arguments),
         }
     }
 
-    /// What a place holds.
-    pub(super) fn read(&mut self, place: &Place) -> ValueId {
-        let whole = self.logic.load(self.slots.of(place));
-        match place.bit {
-            None => whole,
-            Some(bit) => {
-                let mask = self.mask(whole, bit);
-                let masked = self.logic.and(whole, mask);
-                let zero = self.logic.constant(Value::default_of(self.logic.ty(whole)));
-                self.logic.compare(Compare::NotEqual, masked, zero)
-            }
-        }
+    /// The number of an integer expression that is known while lowering: made of constants and of the variables of loops that
+    /// are being unrolled.
+    pub(super) fn known(&self, expression: &Expression) -> Option<i128> {
+        self.known_value(expression)?.as_integer()
     }
 
-    /// Sets a place.
-    pub(super) fn write(&mut self, place: &Place, value: ValueId) {
-        let slot = self.slots.of(place);
-        let value = match place.bit {
-            None => value,
-            Some(bit) => {
-                let whole = self.logic.load(slot);
-                let mask = self.mask(whole, bit);
-                let with = self.logic.or(whole, mask);
-                let other_bits = self.logic.not(mask);
-                let without = self.logic.and(whole, other_bits);
-                self.logic.select(value, with, without)
+    fn known_value(&self, expression: &Expression) -> Option<Value> {
+        let ty = expression.ty;
+        let bits = match &expression.kind {
+            ExpressionKind::Constant(value) => return Some(*value),
+            ExpressionKind::Read(place) => return self.counter(place),
+            ExpressionKind::Widen(operand) => {
+                let operand = self.known_value(operand)?;
+                evaluate::convert(operand.ty(), ty, operand.bits())
             }
+            ExpressionKind::Unary(operator, operand) => {
+                evaluate::unary(unary(*operator), ty, self.known_value(operand)?.bits())
+            }
+            ExpressionKind::Binary(operator, left, right) => {
+                let (left, right) = (self.known_value(left)?, self.known_value(right)?);
+                match operation(*operator) {
+                    Operation::Binary(op) => evaluate::binary(op, ty, left.bits(), right.bits()),
+                    Operation::Compare(op) => u64::from(evaluate::compare(op, left.ty(), left.bits(), right.bits())),
+                }
+            }
+            ExpressionKind::UserCall { .. } | ExpressionKind::Call { .. } => return None,
         };
-        self.store(slot, value);
-    }
-
-    /// Sets a place while a condition holds.
-    pub(super) fn write_if(&mut self, condition: ValueId, place: &Place, value: ValueId) {
-        let old = self.read(place);
-        let value = self.logic.select(condition, value, old);
-        self.write(place, value);
-    }
-
-    /// One bit, in the type of a bit string.
-    fn mask(&mut self, whole: ValueId, bit: u8) -> ValueId {
-        let ty = self.logic.ty(whole);
-        self.logic.constant(Value::from_bits(ty, 1 << bit))
+        Some(Value::from_bits(ty, bits))
     }
 }
 

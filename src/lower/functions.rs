@@ -12,10 +12,15 @@ const SECOND: i64 = 1_000_000_000;
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 impl Lowering<'_> {
-    /// The value of a call with a result of type `ty`. Checking gave every argument the type that its parameter has.
+    /// The value of a function in an expression, with a result of type `ty`.
     pub(super) fn function(&mut self, function: Function, ty: Elementary, arguments: &[Expression]) -> ValueId {
         let values: Vec<ValueId> = arguments.iter().map(|argument| self.expression(argument)).collect();
-        match (function, values.as_slice()) {
+        self.apply(function, ty, &values)
+    }
+
+    /// The same of values, each of which has the type of its parameter.
+    pub(super) fn apply(&mut self, function: Function, ty: Elementary, values: &[ValueId]) -> ValueId {
+        match (function, values) {
             (Function::Standard(function), values) => self.standard(function, ty, values),
             (Function::Convert { .. }, values) => self.conversion(values[0], ty),
             (Function::Truncate { .. }, values) => self.truncation(values[0], ty),

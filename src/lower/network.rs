@@ -3,40 +3,38 @@
 //! Nothing short-circuits: a dead branch computes like a live one.
 
 use super::Lowering;
-use crate::check::{Circuit, Element, Expression, Place, Rung};
+use super::attempt::Attempt;
+use super::cell::Cell;
+use crate::check::{Circuit, Element, Expression, Place, Rung, RungIndex};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::ValueId;
-
-/// The power on each node of a rung, as far as it is fed.
-type Nodes = Vec<Option<ValueId>>;
 
 impl Lowering<'_> {
     /// A rung from the left rail.
     pub(super) fn rung(&mut self, rung: &Rung) {
-        let mut nodes = vec![None; rung.nodes as usize];
+        self.unit.nodes = vec![None; rung.nodes as usize];
         let left = self.logic.bool(true);
-        self.circuit(&rung.circuit, left, &mut nodes);
+        self.circuit(&rung.circuit, left);
     }
 
     /// Branches in parallel; gives the power on their right.
-    pub(super) fn circuit(&mut self, circuit: &Circuit, left: ValueId, nodes: &mut Nodes) -> ValueId {
+    pub(super) fn circuit(&mut self, circuit: &Circuit, left: ValueId) -> ValueId {
         let mut right = None;
         for branch in &circuit.branches {
             let mut power = match branch.from {
                 None => left,
-                Some(node) => self.given(nodes[node.0 as usize]),
+                Some(node) => self.given(self.unit.nodes[node.index()]),
             };
             for element in &branch.elements {
-                power = self.element(element, power, nodes);
+                power = self.element(element, power);
             }
             let end = match branch.to {
                 None => &mut right,
-                Some(node) => &mut nodes[node.0 as usize],
+                Some(node) => &mut self.unit.nodes[node.index()],
             };
-            *end = Some(match *end {
-                None => power,
-                Some(other) => self.logic.or(other, power),
-            });
+            let before = *end;
+            let power = before.map_or(power, |before| self.logic.or(before, power));
+            *end = Some(power);
         }
         self.given(right)
     }
@@ -46,28 +44,51 @@ impl Lowering<'_> {
         power.unwrap_or_else(|| self.logic.bool(false))
     }
 
-    fn element(&mut self, element: &Element, left: ValueId, nodes: &mut Nodes) -> ValueId {
+    fn element(&mut self, element: &Element, left: ValueId) -> ValueId {
         match element {
-            Element::Contact { kind, operand } => self.contact(*kind, operand, left),
+            Element::Contact { kind, operand } => {
+                let outer = self.begin(Some(left));
+                let right = self.contact(*kind, operand, left);
+                self.end(outer);
+                right
+            }
             Element::Coil { kind, target } => {
+                let outer = self.begin(Some(left));
                 self.coil(*kind, target, left);
+                self.end(outer);
                 left
             }
-            Element::Call(call) => self.call(call, left, nodes),
+            Element::Call(call) => self.call(call, Some(left)).right,
             Element::Condition(condition) => {
+                let outer = self.begin(Some(left));
                 let holds = self.expression(condition);
-                self.logic.and(left, holds)
+                let right = self.logic.and(left, holds);
+                self.end_with_power(outer, right)
             }
             Element::Assignment { target, value } => {
+                let outer = self.begin(Some(left));
                 let value = self.expression(value);
-                self.write_if(left, target, value);
-                left
+                let target = self.spot(target);
+                self.store(target, value, Some(left));
+                self.end_with_power(outer, left)
             }
-            Element::Parallel(circuit) => self.circuit(circuit, left, nodes),
-            Element::Jump(target) => self.jump(*target, left),
-            Element::Return => self.jump(self.end, left),
-            Element::Statements(_) => left,
+            Element::Statements(statements) => self.braces(statements, left),
+            Element::Parallel(circuit) => self.circuit(circuit, left),
+            Element::Jump(target) => self.jump_away(*target, left),
+            Element::Return => self.jump_away(self.unit.end, left),
         }
+    }
+
+    /// The end of braces: the power on their right, of which there is none where an index was out of range.
+    fn end_with_power(&mut self, outer: Attempt, right: ValueId) -> ValueId {
+        let in_range = self.end(outer);
+        in_range.map_or(right, |in_range| self.logic.and(right, in_range))
+    }
+
+    /// A jump; gives the power on its right, of which there is none.
+    fn jump_away(&mut self, target: RungIndex, power: ValueId) -> ValueId {
+        self.jump(target, Some(power));
+        self.logic.bool(false)
     }
 
     fn contact(&mut self, kind: ContactKind, operand: &Expression, left: ValueId) -> ValueId {
@@ -82,29 +103,32 @@ impl Lowering<'_> {
     }
 
     fn coil(&mut self, kind: CoilKind, target: &Place, power: ValueId) {
+        let spot = self.spot(target);
         let value = match kind {
             CoilKind::Plain => power,
             CoilKind::Negated => self.logic.not(power),
             CoilKind::Set => {
-                let old = self.read(target);
+                let old = self.load(spot);
                 self.logic.or(old, power)
             }
             CoilKind::Reset => {
-                let old = self.read(target);
+                let old = self.load(spot);
                 let no_power = self.logic.not(power);
                 self.logic.and(old, no_power)
             }
             CoilKind::Rising => self.edge(power),
             CoilKind::Falling => self.falling_edge(power),
         };
-        self.write(target, value);
+        self.store(spot, value, None);
     }
 
     /// Whether a signal has become TRUE since the last scan: R_TRIG, with a memory of its own.
     fn edge(&mut self, signal: ValueId) -> ValueId {
-        let memory = *self.edges.next().unwrap_or_else(|| unreachable!("every edge of the drawing has a memory"));
-        let before = self.logic.load(memory);
-        self.store(memory, signal);
+        let cells = *self.unit.edges.next().unwrap_or_else(|| unreachable!("every edge of the drawing has a memory"));
+        let memory = Cell { cells, pick: self.unit.pick };
+        let before = memory.load(&mut self.logic);
+        let executed = self.effective(None);
+        memory.store(&mut self.logic, executed, signal);
         let was_off = self.logic.not(before);
         self.logic.and(signal, was_off)
     }

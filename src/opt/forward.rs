@@ -36,17 +36,15 @@ pub(super) fn forward(program: Program) -> Program {
             }
             Op::Store(slot, value) => {
                 known.insert(slot, Known { value, until: place.section + WINDOW });
-                output.emit(instruction.ty, instruction.op);
-                None
+                output.keep(instruction)
             }
-            Op::StoreIndexed(array, ..) => {
+            Op::StoreIndexed(array, ..) | Op::CopyArray(array, ..) => {
                 // Any of its elements may be another now.
                 let slots: Vec<SlotId> = known.range(arrays[array.index()].slots()).map(|(slot, _)| *slot).collect();
                 slots.iter().for_each(|slot| {
                     known.remove(slot);
                 });
-                output.emit(instruction.ty, instruction.op);
-                None
+                output.keep(instruction)
             }
             Op::Constant(_)
             | Op::Now
@@ -56,7 +54,7 @@ pub(super) fn forward(program: Program) -> Program {
             | Op::Select(..)
             | Op::Convert(_)
             | Op::Call(..)
-            | Op::LoadIndexed(..) => Some(output.emit(instruction.ty, instruction.op)),
+            | Op::LoadIndexed(..) => output.keep(instruction),
         }
     })
 }

@@ -47,10 +47,7 @@ pub(super) fn gather(program: Program) -> Program {
                 let copied = |values: Vec<ValueId>| values.into_iter().filter_map(|v| copies[v.index()]).collect();
                 Some(build(output, op, copied(tree.straight), copied(tree.inverted)))
             }
-            (_, op) => {
-                let value = output.emit(instruction.ty, op);
-                op.has_value().then_some(value)
-            }
+            _ => output.keep(instruction),
         };
         copies[place.index] = copy;
         copy

@@ -19,6 +19,12 @@ impl Output {
         value
     }
 
+    /// Adds an instruction as it is; gives its value, if it has one.
+    pub(super) fn keep(&mut self, Instruction { ty, op }: Instruction) -> Option<ValueId> {
+        let value = self.emit(ty, op);
+        op.has_value().then_some(value)
+    }
+
     /// Adds a constant, in register form.
     pub(super) fn constant(&mut self, ty: Elementary, bits: u64) -> ValueId {
         self.emit(ty, Op::Constant(bits))

@@ -1,46 +1,24 @@
-//! Constants are computed, and what the identities of logic make simpler is made so.
+//! What the identities of logic make simpler is made so, and what is constant only by that is computed, too.
 
+use super::fold::folded;
 use super::rewrite::{Output, rewrite};
 use crate::elementary::{Elementary, canonical};
-use crate::logic::{Binary, Compare, Instruction, Op, Program, Unary, ValueId, evaluate};
+use crate::logic::{Binary, Compare, Instruction, Op, Program, Unary, ValueId};
 
 /// See the module.
 pub(super) fn simplify(program: Program) -> Program {
+    let arrays = program.layout.arrays().to_vec();
     rewrite(program, |output, _, instruction| {
-        let simpler = folded(output, instruction).or_else(|| simplified(output, instruction));
-        match (simpler, instruction.op) {
-            (Some(value), _) => Some(value),
-            (None, op) if !op.has_value() => {
-                output.emit(instruction.ty, instruction.op);
-                None
-            }
-            (None, _) => Some(output.emit(instruction.ty, instruction.op)),
-        }
+        let folded = folded(output, &arrays, instruction);
+        let simpler = folded.or_else(|| simplified(output, instruction).map(Some));
+        simpler.unwrap_or_else(|| output.keep(instruction))
     })
-}
-
-/// An operation on constants alone, computed.
-fn folded(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
-    let constant = |value| output.constant_of(value);
-    let bits = match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
-            return None;
-        }
-        Op::Unary(op, a) => evaluate::unary(op, ty, constant(a)?),
-        Op::Binary(op, a, b) => evaluate::binary(op, ty, constant(a)?, constant(b)?),
-        Op::Compare(op, a, b) => u64::from(evaluate::compare(op, output.ty(a), constant(a)?, constant(b)?)),
-        Op::Select(condition, a, b) => return Some(if constant(condition)? != 0 { a } else { b }),
-        Op::Convert(a) => evaluate::convert(output.ty(a), ty, constant(a)?),
-        Op::Call(helper, a, None) => evaluate::call(helper, ty, constant(a)?, None),
-        Op::Call(helper, a, Some(b)) => evaluate::call(helper, ty, constant(a)?, Some(constant(b)?)),
-    };
-    Some(output.constant(ty, bits))
 }
 
 fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     match op {
         Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) | Op::Call(..) => None,
-        Op::LoadIndexed(..) | Op::StoreIndexed(..) => None,
+        Op::LoadIndexed(..) | Op::StoreIndexed(..) | Op::CopyArray(..) => None,
         Op::Unary(op, a) => unary(output, op, a),
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),

@@ -1,17 +1,18 @@
 //! What nobody sees is removed: values without a use, and stores that are overwritten in their own section before
 //! anything loads the slot. Nobody looks at the image within a scan.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
+use std::ops::Range;
 
 use super::rewrite::rewrite;
-use crate::logic::{Op, Program};
+use crate::logic::{Op, Program, SlotId};
 
 /// See the module.
 pub(super) fn sweep(program: Program) -> Program {
     let mut needed = vec![false; program.instructions.len()];
     for section in (0..program.sections.len()).rev() {
         // Slots that this section stores, later than where we are and with no load between.
-        let mut overwritten = HashSet::new();
+        let mut overwritten = BTreeSet::new();
         for index in program.section_range(section).rev() {
             match program.instructions[index].op {
                 Op::Store(slot, _) => needed[index] = overwritten.insert(slot),
@@ -19,9 +20,12 @@ pub(super) fn sweep(program: Program) -> Program {
                     overwritten.remove(&slot);
                 }
                 Op::StoreIndexed(..) => needed[index] = true,
+                Op::CopyArray(_, from, _) => {
+                    needed[index] = true;
+                    remove(&mut overwritten, program.layout.array(from).slots());
+                }
                 Op::LoadIndexed(array, _) if needed[index] => {
-                    let read = program.layout.array(array).slots();
-                    overwritten.retain(|slot| !read.contains(slot));
+                    remove(&mut overwritten, program.layout.array(array).slots());
                 }
                 Op::Constant(_)
                 | Op::Now
@@ -42,4 +46,12 @@ pub(super) fn sweep(program: Program) -> Program {
     rewrite(program, |output, place, instruction| {
         needed[place.index].then(|| output.emit(instruction.ty, instruction.op))
     })
+}
+
+/// Takes out the slots of a range, in time that grows with those that are there.
+fn remove(slots: &mut BTreeSet<SlotId>, range: Range<SlotId>) {
+    let gone: Vec<SlotId> = slots.range(range).copied().collect();
+    gone.iter().for_each(|slot| {
+        slots.remove(slot);
+    });
 }

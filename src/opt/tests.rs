@@ -2,7 +2,7 @@
 
 use super::{PASSES, optimise};
 use crate::elementary::{Elementary, Value};
-use crate::logic::{Area, Builder, Compare, LayoutBuilder, Op, Origin, Program, Slot, SlotId};
+use crate::logic::{Area, ArrayId, Binary, Builder, Compare, LayoutBuilder, Op, Origin, Program, Slot, SlotId};
 
 /// A program over BOOLs `a` to `e` and an INT `n`, made by `sections`, one after another.
 fn program(sections: &[fn(&mut Builder, &[SlotId])]) -> Program {
@@ -43,6 +43,7 @@ fn print(program: &Program) -> String {
             Op::Store(slot, a) => format!("{} := {a}", name(slot)),
             Op::LoadIndexed(array, place) => format!("v{index} = {array}[{place}]"),
             Op::StoreIndexed(array, place, a) => format!("{array}[{place}] := {a}"),
+            Op::CopyArray(to, from, condition) => format!("{to} := {from} while {condition}"),
             Op::Unary(op, a) => format!("v{index} = {} {a}", op.mnemonic()),
             Op::Binary(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
             Op::Compare(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
@@ -149,7 +150,7 @@ fn simplify_computes_constants_and_turns_comparisons_round() {
         "simplify",
         &[|logic, s| {
             let two = logic.constant(Value::from_bits(Elementary::Int, 2));
-            let four = logic.binary(crate::logic::Binary::Multiply, two, two);
+            let four = logic.binary(Binary::Multiply, two, two);
             let count = logic.load(s[5]);
             let less = logic.compare(Compare::Less, count, four);
             let not_less = logic.not(less);
@@ -245,6 +246,91 @@ fn a_tree_of_a_hundred_thousand_contacts_is_gathered() {
         logic.store(s[2], power);
     }]);
     assert!(optimise(program).instructions.len() < 400_000);
+}
+
+/// A program over arrays `x` and `y` of three INTs, INTs `n` and `m`, and a LINT `i`, of one section.
+fn over_arrays(section: impl Fn(&mut Builder, [ArrayId; 2], &[SlotId])) -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str, ty| {
+        let (name, initial) = (name.to_owned(), Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+    };
+    let names = ["x[0]", "x[1]", "x[2]", "y[0]", "y[1]", "y[2]", "n", "m"];
+    let mut slots = names.map(|name| slot(name, Elementary::Int)).to_vec();
+    slots.push(slot("i", Elementary::Lint));
+    let arrays = [slots[0], slots[3]].map(|first| layout.array(first, 3));
+    let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
+    section(&mut logic, arrays, &slots);
+    logic.end_section(Origin { label: "r".into(), line: 1 });
+    logic.finish()
+}
+
+fn lint(value: i64) -> Value {
+    Value::from_bits(Elementary::Lint, value.cast_unsigned())
+}
+
+#[test]
+fn fold_makes_an_element_with_a_constant_index_its_slot() {
+    let program = over_arrays(|logic, [x, y], s| {
+        let (one, two) = (logic.constant(lint(1)), logic.constant(lint(2)));
+        let last = logic.binary(Binary::Subtract, two, one);
+        let element = logic.load_indexed(x, last);
+        logic.store_indexed(y, two, element);
+        let beyond = logic.binary(Binary::Add, two, one);
+        let none = logic.load_indexed(x, beyond);
+        logic.store(s[6], none);
+        logic.store_indexed(y, beyond, element);
+        let below = logic.binary(Binary::Subtract, one, two);
+        logic.store_indexed(y, below, element);
+    });
+    assert_eq!(print(&pass("sweep", pass("fold", program))), "v0 = x[1]; y[2] := v0; v2 = 0; n := v2");
+}
+
+#[test]
+fn an_index_that_is_constant_only_after_forwarding_is_found_too() {
+    let program = over_arrays(|logic, [x, _], s| {
+        let two = logic.constant(lint(2));
+        logic.store(s[8], two);
+        let (index, value) = (logic.load(s[8]), logic.load(s[6]));
+        logic.store_indexed(x, index, value);
+    });
+    assert_eq!(print(&optimise(program)), "v0 = 2; i := v0; v2 = n; x[2] := v2");
+}
+
+#[test]
+fn fold_drops_copies_that_change_nothing() {
+    let program = over_arrays(|logic, [x, y], s| {
+        let (never, always) = (logic.bool(false), logic.bool(true));
+        logic.copy_array(x, y, Some(never));
+        logic.copy_array(x, x, Some(always));
+        let index = logic.load(s[8]);
+        let zero = logic.constant(lint(0));
+        let sometimes = logic.compare(Compare::Less, index, zero);
+        logic.copy_array(x, x, Some(sometimes));
+        logic.copy_array(x, y, Some(always));
+        logic.copy_array(y, x, Some(sometimes));
+    });
+    let expected = "v0 = 1; v1 = i; v2 = 0; v3 = lt v1 v2; a0 := a1 while v0; a1 := a0 while v3";
+    assert_eq!(print(&pass("sweep", pass("fold", program))), expected);
+}
+
+#[test]
+fn an_indexed_store_and_a_copy_change_only_their_arrays_and_a_copy_sees_all_of_the_other() {
+    let program = over_arrays(|logic, [x, y], s| {
+        let (n, m, index) = (logic.load(s[6]), logic.load(s[7]), logic.load(s[8]));
+        // Seen by the copy, though it is overwritten after.
+        logic.store(s[3], n);
+        logic.copy_array(x, y, None);
+        logic.store(s[3], m);
+        logic.store_indexed(x, index, n);
+        let (same, other) = (logic.load(s[3]), logic.load(s[0]));
+        logic.store(s[4], same);
+        logic.store(s[5], other);
+    });
+    assert_eq!(
+        print(&pass("sweep", pass("forward", program))),
+        "v0 = n; v1 = m; v2 = i; y[0] := v0; v4 = 1; a0 := a1 while v4; y[0] := v1; a0[v2] := v0; v8 = x[0]; y[1] := v1; y[2] := v8"
+    );
 }
 
 #[test]

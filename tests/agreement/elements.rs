@@ -8,8 +8,8 @@ use rung::ladder::{
 };
 
 use crate::support::drawing::{
-    NOWHERE, argument, branch, call, coil, contact, contact_of, element, expression, name, parallel, program, read,
-    reference, rung, variable,
+    NOWHERE, argument, branch, call, coil, contact, contact_of, element, expression, integer, name, parallel, program,
+    read, reference, rung, variable,
 };
 use crate::support::oracle::Oracle;
 use crate::support::rig::{Rig, checked};
@@ -26,9 +26,9 @@ fn drawn(rungs: Vec<Vec<Element>>) -> Program {
         (VariableClass::Memory, "z", Elementary::Real),
         (VariableClass::Memory, "w", Elementary::Word),
     ] {
-        program.variables.push(variable(class, text, ty));
+        program.units[0].variables.push(variable(class, text, ty));
     }
-    program.rungs = rungs.into_iter().map(rung).collect();
+    program.units[0].rungs = rungs.into_iter().map(rung).collect();
     program
 }
 
@@ -326,12 +326,6 @@ fn binary(operator: BinaryOperator, left: Expression, right: Expression) -> Expr
 
 fn add(text: &str, value: i128) -> Expression {
     binary(BinaryOperator::Add, read(text), integer(value))
-}
-
-fn integer(value: i128) -> Expression {
-    let magnitude = Literal::Integer { value: value.unsigned_abs(), base: 10, ty: None };
-    let magnitude = expression(ExpressionKind::Literal(magnitude));
-    if value < 0 { expression(ExpressionKind::Unary(UnaryOperator::Negate, Box::new(magnitude))) } else { magnitude }
 }
 
 fn real(value: f64) -> Expression {

@@ -17,7 +17,7 @@ fn the_examples_compute_the_same_everywhere_and_the_evaluator_agrees() {
         let source = source(&path);
         let parsed = frontend::parse(&source);
         assert_eq!(parsed.diagnostics, [], "{}", path.display());
-        rungs += parsed.program.rungs.len();
+        rungs += parsed.program.rungs().count();
         let checked = checked(&parsed.program).unwrap_or_else(|problems| panic!("{}: {problems}", path.display()));
         let layout = lower::lower(&checked, &source, None).expect("a small image").layout;
         let stimuli = self::source(&path.with_extension("stimuli.csv"));

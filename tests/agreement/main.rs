@@ -1,11 +1,18 @@
 //! Every engine and the independent evaluator compute the same: on step tables, on each element, on random programs.
 
+mod arrays;
+mod boxes;
 mod elements;
 mod examples;
+mod faults;
 mod jumps;
 mod random;
+mod register_machine;
+mod statements;
 mod steps;
 mod straight_line;
+mod tasks;
+mod units;
 
 #[path = "../support"]
 mod support {
@@ -16,5 +23,6 @@ mod support {
     pub(crate) mod random_program;
     pub(crate) mod random_stimuli;
     pub(crate) mod rig;
+    pub(crate) mod script;
     pub(crate) mod step_table;
 }

@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use rung::check::{Call, Checked, Circuit, Element, Place, Wire};
+use rung::check::{Call, Callee, Checked, Circuit, Element, Place, Wire};
 use rung::elementary::Elementary;
 use rung::frontend::{self, native};
 use rung::ladder::Program;
@@ -160,11 +160,11 @@ fn run(program: &Program, seed: u64) -> Result<(), Failure> {
 fn report(program: &Program, seed: u64) -> String {
     let Err(mut failure) = run(program, seed) else { return format!("seed {seed}: it fails only sometimes") };
     let mut smallest = program.clone();
-    let mut place = smallest.rungs.len();
+    let mut place = smallest.units[0].rungs.len();
     while place > 0 {
         place -= 1;
         let mut smaller = smallest.clone();
-        smaller.rungs.remove(place);
+        smaller.units[0].rungs.remove(place);
         match run(&smaller, seed) {
             Err(same) if same.heading == failure.heading && failure.heading != "it does not check" => {
                 (smallest, failure) = (smaller, same);
@@ -178,12 +178,17 @@ fn report(program: &Program, seed: u64) -> String {
 
 /// The rungs that write a variable or call an instance.
 fn writers(checked: &Checked, name: &str) -> Vec<String> {
-    let variable = name.split_once('.').filter(|_| !name.starts_with('%')).map_or(name, |(instance, _)| instance);
+    let variable = name.split_once(['.', '[']).filter(|_| !name.starts_with('%')).map_or(name, |(first, _)| first);
     let is_it = |place: &Place| checked.variable(place.variable).name == variable;
     let in_call = |call: &Call| {
-        checked.variable(call.instance).name == variable || call.outputs.iter().any(|(_, target)| is_it(target))
+        let is_called = match &call.callee {
+            Callee::Standard(_, instance) | Callee::Unit(_, instance) => is_it(instance),
+            Callee::Function(..) | Callee::UserFunction(_) => false,
+        };
+        let references = call.references.iter().map(|(_, place)| place);
+        is_called || call.outputs.iter().map(|(_, target)| target).chain(references).any(is_it)
     };
-    let rungs = checked.rungs().iter().filter(|rung| {
+    let rungs = checked.units().iter().flat_map(|unit| &unit.rungs).filter(|rung| {
         let mut found = false;
         elements(&rung.circuit, &mut |element| {
             found |= match element {

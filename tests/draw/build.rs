@@ -2,9 +2,9 @@
 
 use rung::elementary::Elementary;
 use rung::ladder::{
-    Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, Comment, ContactKind, Element,
-    ElementKind, Expression, ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Variable,
-    VariableClass, Width, Wire,
+    Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, Comment, ConditionalBranch,
+    ContactKind, Element, ElementKind, Expression, ExpressionKind, Literal, Name, Origin, Program, Reference, Root,
+    Rung, Statement, StatementKind, TypeReference, Variable, VariableClass, Width, Wire,
 };
 use rung::source::Span;
 
@@ -74,6 +74,20 @@ pub(crate) fn assignment(target: &str, value: Expression) -> Element {
     element(ElementKind::Assignment { target: reference(target), value })
 }
 
+pub(crate) fn statements(list: Vec<Statement>) -> Element {
+    element(ElementKind::Statements(list))
+}
+
+pub(crate) fn assign(target: &str, value: Expression) -> Statement {
+    let kind = StatementKind::Assignment { target: reference(target), value };
+    Statement { kind, span: NOWHERE }
+}
+
+pub(crate) fn when(condition: Expression, body: Vec<Statement>) -> Statement {
+    let kind = StatementKind::If { branches: vec![ConditionalBranch { condition, body }], otherwise: vec![] };
+    Statement { kind, span: NOWHERE }
+}
+
 pub(crate) fn jump(text: &str) -> Element {
     element(ElementKind::Jump { target: name(text) })
 }
@@ -104,7 +118,7 @@ pub(crate) fn block(instance: &str, ty: &str, arguments: Vec<(&str, Wire)>) -> E
 pub(crate) fn chosen(instance: &str, ty: &str, arguments: Vec<(&str, Wire)>, output: &str) -> Element {
     let some = |text: &str| (!text.is_empty()).then(|| name(text));
     element(ElementKind::Block(BlockCall {
-        instance: name(instance),
+        instance: reference(instance),
         type_name: some(ty),
         arguments: arguments.into_iter().map(|(pin, wire)| Argument { pin: name(pin), wire, span: NOWHERE }).collect(),
         power_output: some(output),
@@ -139,15 +153,15 @@ pub(crate) fn rung_of(text: &str, title: &str, branches: Vec<Branch>) -> Rung {
 }
 
 pub(crate) fn program(text: &str, variables: Vec<Variable>, rungs: Vec<Rung>) -> Program {
-    Program { origin: Origin::Native, name: name(text), variables, rungs, comments: vec![] }
+    Program::of_one(Origin::Native, name(text), variables, rungs)
 }
 
 pub(crate) fn variable(class: VariableClass, text: &str) -> Variable {
-    Variable { class, name: name(text), type_name: None, address: None, initial: None, retain: false, span: NOWHERE }
+    Variable { class, name: name(text), ty: None, address: None, initial: None, retain: false, span: NOWHERE }
 }
 
 pub(crate) fn typed(class: VariableClass, text: &str, ty: &str) -> Variable {
-    Variable { type_name: Some(name(ty)), ..variable(class, text) }
+    Variable { ty: Some(TypeReference::of_name(name(ty))), ..variable(class, text) }
 }
 
 pub(crate) fn address(area: Area, numbers: &[u32]) -> Option<Address> {

@@ -84,7 +84,7 @@ fn pump_station() -> Program {
             ),
         ],
     );
-    for (index, rung) in program.rungs.iter_mut().enumerate() {
+    for (index, rung) in program.units[0].rungs.iter_mut().enumerate() {
         rung.span = Span::new(1000 * (index + 1), 1000 * (index + 1) + 500);
     }
     program.comments = vec![
@@ -98,7 +98,7 @@ fn pump_station() -> Program {
             true,
         ),
     ];
-    program.variables[6].span = Span::new(10, 20);
+    program.units[0].variables[6].span = Span::new(10, 20);
     program
 }
 

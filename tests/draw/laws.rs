@@ -5,8 +5,8 @@ use ::svg::parser::Event;
 use proptest::prelude::*;
 use rung::draw::{TextOptions, svg, text};
 use rung::ladder::{
-    BinaryOperator, Circuit, CoilKind, ContactKind, Element, ElementKind, ExpressionKind, Program, Rung, UnaryOperator,
-    Wire,
+    BinaryOperator, Circuit, CoilKind, ContactKind, Element, ElementKind, ExpressionKind, Program, Rung, Statement,
+    StatementKind, UnaryOperator, Wire,
 };
 use unicode_width::UnicodeWidthStr;
 
@@ -29,6 +29,10 @@ fn any_simple_element() -> impl Strategy<Value = Element> {
         1 => any_name().prop_map(|name| condition(binary(BinaryOperator::Less, read(&name), number(7)))),
         1 => any_name().prop_map(|name| assignment(&name, number(12_345))),
         1 => any_name().prop_map(|name| jump(&name)),
+        1 => (any_name(), any_name()).prop_map(|(one, other)| {
+            let inner = vec![assign(&one, number(1)), assign(&other, number(2))];
+            statements(vec![assign(&other, number(3)), when(read(&one), inner)])
+        }),
     ]
 }
 
@@ -88,8 +92,9 @@ fn names(circuit: &Circuit, found: &mut Vec<String>) {
                 ElementKind::Parallel(inner) => names(inner, found),
                 ElementKind::Jump { target } => found.push(target.text.clone()),
                 ElementKind::Return => {}
+                ElementKind::Statements(statements) => statement_names(statements, found),
                 ElementKind::Block(call) => {
-                    found.push(call.instance.text.clone());
+                    read_name(&ExpressionKind::Read(call.instance.clone()), found);
                     for argument in &call.arguments {
                         match &argument.wire {
                             Wire::Value(value) => read_name(&value.kind, found),
@@ -99,6 +104,18 @@ fn names(circuit: &Circuit, found: &mut Vec<String>) {
                     }
                 }
             }
+        }
+    }
+}
+
+fn statement_names(statements: &[Statement], found: &mut Vec<String>) {
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Assignment { target, .. } => read_name(&ExpressionKind::Read(target.clone()), found),
+            StatementKind::If { branches, .. } => {
+                branches.iter().for_each(|branch| statement_names(&branch.body, found));
+            }
+            _ => {}
         }
     }
 }
@@ -113,7 +130,7 @@ fn read_name(kind: &ExpressionKind, found: &mut Vec<String>) {
 
 fn assert_complete(program: &Program, picture: &str) {
     let mut found = Vec::new();
-    program.rungs.iter().for_each(|rung| names(&rung.circuit, &mut found));
+    program.rungs().for_each(|rung| names(&rung.circuit, &mut found));
     for name in found {
         assert!(picture.contains(&name), "{name} is missing in\n{picture}");
     }
@@ -214,7 +231,7 @@ proptest! {
 
     #[test]
     fn without_nodes_and_jumps_no_wire_has_a_loose_end(mut program in any_program(true), width in 20usize..160) {
-        program.rungs.iter_mut().for_each(|rung| without_nodes(&mut rung.circuit));
+        program.units[0].rungs.iter_mut().for_each(|rung| without_nodes(&mut rung.circuit));
         assert_wired(&text(&program, &TextOptions { width }));
     }
 

@@ -8,7 +8,7 @@ use super::{parse, parse_well};
 /// The elements of the only branch of a rung with this body.
 fn elements(body: &str) -> Vec<ElementKind> {
     let mut program = parse_well(&format!("rung\n{body}"));
-    let mut branches = program.rungs.remove(0).circuit.branches;
+    let mut branches = program.units[0].rungs.remove(0).circuit.branches;
     assert_eq!(branches.len(), 1, "{body}");
     branches.remove(0).elements.into_iter().map(|element| element.kind).collect()
 }
@@ -31,12 +31,16 @@ fn brief(kind: &ElementKind) -> String {
         ElementKind::Coil { kind, target } => format!("({kind:?} {})", reference_brief(target)),
         ElementKind::Block(call) => format!(
             "block {}:{}/{}.{}",
-            call.instance.text,
+            reference_brief(&call.instance),
             call.type_name.as_ref().map_or("", |name| &name.text),
             call.arguments.len(),
             call.power_output.as_ref().map_or("", |name| &name.text)
         ),
         ElementKind::Condition(_) => "condition".to_owned(),
+        ElementKind::Statements(statements) => {
+            let statements: Vec<String> = statements.iter().map(statement_brief).collect();
+            format!("{{{}}}", statements.join(" "))
+        }
         ElementKind::Jump { target } => format!("jump {}", target.text),
         ElementKind::Return => "return".to_owned(),
         ElementKind::Assignment { target, .. } => format!("assign {}", reference_brief(target)),
@@ -45,6 +49,51 @@ fn brief(kind: &ElementKind) -> String {
                 circuit.branches.iter().map(|branch| briefs(branch.elements.iter().map(|e| &e.kind))).collect();
             format!("[{}]", branches.join("|"))
         }
+    }
+}
+
+/// A statement in short.
+fn statement_brief(statement: &Statement) -> String {
+    let body = |body: &[Statement]| body.iter().map(statement_brief).collect::<Vec<_>>().join(" ");
+    match &statement.kind {
+        StatementKind::Assignment { target, value } => format!("{} := {};", reference_brief(target), grouped(value)),
+        StatementKind::Call(call) => {
+            let argument = |argument: &Argument| match &argument.wire {
+                Wire::Value(value) => format!("{}: {}", argument.pin.text, grouped(value)),
+                Wire::Output(target) => format!("{} > {}", argument.pin.text, reference_brief(target)),
+                Wire::Circuit(_) => panic!("a circuit in a statement"),
+            };
+            let arguments: Vec<String> = call.arguments.iter().map(argument).collect();
+            format!("call {}<{}>;", reference_brief(&call.instance), arguments.join(", "))
+        }
+        StatementKind::If { branches, otherwise } => {
+            let branch =
+                |branch: &ConditionalBranch| format!("if {} ({})", grouped(&branch.condition), body(&branch.body));
+            let branches: Vec<String> = branches.iter().map(branch).collect();
+            format!("{} else ({})", branches.join(" "), body(otherwise))
+        }
+        StatementKind::Case { selector, branches, otherwise } => {
+            let label = |label: &CaseLabel| match &label.last {
+                Some(last) => format!("{}..{}", grouped(&label.first), grouped(last)),
+                None => grouped(&label.first),
+            };
+            let branch = |branch: &CaseBranch| {
+                let labels: Vec<String> = branch.labels.iter().map(label).collect();
+                format!("on {} ({})", labels.join(" "), body(&branch.body))
+            };
+            let branches: Vec<String> = branches.iter().map(branch).collect();
+            format!("case {} {} else ({})", grouped(selector), branches.join(" "), body(otherwise))
+        }
+        StatementKind::For { variable, first, last, step, body: repeated } => format!(
+            "for {} {} {} {} ({})",
+            reference_brief(variable),
+            grouped(first),
+            grouped(last),
+            step.as_ref().map_or(String::new(), grouped),
+            body(repeated)
+        ),
+        StatementKind::Exit => "exit;".to_owned(),
+        StatementKind::Return => "return;".to_owned(),
     }
 }
 
@@ -61,6 +110,10 @@ fn reference_brief(reference: &Reference) -> String {
         match step {
             Step::Member(name) => text.push_str(&format!(".{}", name.text)),
             Step::Bit(bit, _) => text.push_str(&format!("#{bit}")),
+            Step::Index(indices, _) => {
+                let indices: Vec<String> = indices.iter().map(grouped).collect();
+                text.push_str(&format!("[{}]", indices.join(" ")));
+            }
         }
     }
     text
@@ -96,7 +149,22 @@ fn every_contact_coil_and_shape_of_element() {
         ("t1 : TON()", "block t1:TON/0."),
         ("t1 (x)", "Open t1, (Plain x)"),
         ("t1\n(x)", "Open t1, (Plain x)"),
-        ("t1.Q(x)", "Open t1.Q, (Plain x)"),
+        ("t1.Q (x) w.3(x) %IX0.1(x)", "Open t1.Q, (Plain x), Open w#3, (Plain x), Open InputBit[0, 1], (Plain x)"),
+        (
+            "a[i] a[i+1, 2].x /a[b[c]] (S a [3]) (s[1])",
+            "Open a[i], Open a[(i + 1) 2].x, Closed a[b[c]], (Set a[3]), (Plain s[1])",
+        ),
+        ("a [ i | j ]", "Open a, [Open i|Open j]"),
+        (
+            "timers[3](PT := x) fb.t1() fb.t[i].u(Q => z).Q",
+            "block timers[3]:/1., block fb.t1:/0., block fb.t[i].u:/1.Q",
+        ),
+        ("AND(IN1 := a) Mod() NOT(IN := a).OUT", "block AND:/1., block Mod:/0., block NOT:/1.OUT"),
+        ("{f(x)} {f(x);} {AND(a, b)} {x := 1;} {;}", "condition, {call f<: x>;}, condition, {x := 1;}, {}"),
+        (
+            "{t.u(IN := a, 5, Q => b[1]); exit; RETURN; ; %QW3 := 5;}",
+            "{call t.u<IN: a, : 5, Q > b[1]>; exit; return; OutputWord[3] := 5;}",
+        ),
         ("/t1(x)", "Closed t1, (Plain x)"),
         ("c:CTU(R := [ a | b ], PV := 10 + n)", "block c:CTU/2."),
     ];
@@ -108,7 +176,7 @@ fn every_contact_coil_and_shape_of_element() {
 #[test]
 fn a_block_keeps_its_wires_in_order() {
     let ElementKind::Block(call) = element("c:CTUD(R := [ a /b | c ], PV := 10, CV => w.3).QD") else { panic!() };
-    assert_eq!((call.instance.text.as_str(), call.type_name.unwrap().text.as_str()), ("c", "CTUD"));
+    assert_eq!((reference_brief(&call.instance).as_str(), call.type_name.unwrap().text.as_str()), ("c", "CTUD"));
     assert_eq!(call.power_output.unwrap().text, "QD");
     let [reset, preset, count] = call.arguments.try_into().unwrap();
     assert_eq!([&reset.pin.text, &preset.pin.text, &count.pin.text], ["R", "PV", "CV"]);
@@ -187,6 +255,8 @@ fn grouped(expression: &Expression) -> String {
         ExpressionKind::Binary(operator, left, right) => {
             format!("({} {} {})", grouped(left), operator.symbol(), grouped(right))
         }
+        ExpressionKind::Literal(Literal::Enumerated { ty, value }) => format!("{}#{}", ty.text, value.text),
+        ExpressionKind::Literal(Literal::Integer { value, base: 10, ty: None }) => value.to_string(),
         ExpressionKind::Literal(literal) => format!("{literal:?}"),
         ExpressionKind::Call { function, arguments } => {
             let argument = |argument: &FunctionArgument| match &argument.parameter {
@@ -195,6 +265,18 @@ fn grouped(expression: &Expression) -> String {
             };
             let arguments: Vec<String> = arguments.iter().map(argument).collect();
             format!("{}<{}>", function.text, arguments.join(", "))
+        }
+        ExpressionKind::Array(items) => {
+            let value = |value: &Option<Expression>| value.as_ref().map_or(String::new(), grouped);
+            let item = |item: &ArrayItem| match &item.repeat {
+                Some(repeat) => format!("{} x {}", grouped(repeat), value(&item.value)),
+                None => value(&item.value),
+            };
+            format!("[{}]", items.iter().map(item).collect::<Vec<_>>().join(", "))
+        }
+        ExpressionKind::Structure(members) => {
+            let member = |member: &MemberValue| format!("{}: {}", member.member.text, grouped(&member.value));
+            format!("({})", members.iter().map(member).collect::<Vec<_>>().join(", "))
         }
     }
 }
@@ -244,11 +326,11 @@ fn declarations_take_their_clauses_in_any_order() {
         "program p\nINPUT a, b : BOOL\noutput c at %QX0.1\nvar t1 : TON retain\n\
          var d retain := 5 : INT at %MW3\nconst e := T#5s\nvar at, retain : at at %I3",
     );
-    let brief: Vec<String> = program
+    let brief: Vec<String> = program.units[0]
         .variables
         .iter()
         .map(|variable| {
-            let type_name = variable.type_name.as_ref().map_or("", |name| &name.text);
+            let type_name = variable.ty.as_ref().map_or("", |ty| &ty.name.text);
             let address = variable.address.as_ref().map(|address| &address.numbers);
             let initial = variable.initial.as_ref().map_or(String::new(), grouped);
             format!("{:?} {}:{type_name} {address:?} {initial} {}", variable.class, variable.name.text, variable.retain)
@@ -261,7 +343,7 @@ fn declarations_take_their_clauses_in_any_order() {
             "Input b:BOOL None  false",
             "Output c: Some([0, 1])  false",
             "Memory t1:TON None  true",
-            "Memory d:INT Some([3]) Integer { value: 5, base: 10, ty: None } true",
+            "Memory d:INT Some([3]) 5 true",
             "Constant e: None Time(5000000000) false",
             "Memory at:at Some([3])  false",
             "Memory retain:at Some([3])  false",
@@ -275,7 +357,7 @@ fn rungs_have_names_titles_and_states_or_not() {
         "rung r10 \"one $\"two$\" $$3$N\"\na\nrung \"t\" a\nrung r2\na\nrung\na (b)\nrung off r3 \"x\" a\nRUNG OFF\na\n\
          rung\noff\nrung `off`\nrung /a (b)\nrung r9 -- comment\na",
     );
-    let brief: Vec<_> = program
+    let brief: Vec<_> = program.units[0]
         .rungs
         .iter()
         .map(|rung| {
@@ -308,7 +390,7 @@ fn rungs_have_names_titles_and_states_or_not() {
 #[test]
 fn branches_start_and_end_at_nodes() {
     let program = parse_well("rung\na >x> | >x> b >y> | - >x> | >x> >y> | >y> | c (d) | ");
-    let brief: Vec<_> = program.rungs[0]
+    let brief: Vec<_> = program.units[0].rungs[0]
         .circuit
         .branches
         .iter()
@@ -339,8 +421,8 @@ fn spans_cover_what_they_name() {
     let text = &text.replace("({c)", "{c + (1)}");
     let (program, _) = parse(text);
     let slice = |span: rung::source::Span| &text[span.range()];
-    assert_eq!(slice(program.variables[0].span), "var t1 : TON  retain");
-    let rung = &program.rungs[0];
+    assert_eq!(slice(program.units[0].variables[0].span), "var t1 : TON  retain");
+    let rung = &program.units[0].rungs[0];
     assert_eq!(slice(rung.span), &text[text.find("rung").unwrap()..]);
     let elements = &rung.circuit.branches[0].elements;
     assert_eq!(slice(elements[0].span), "/a");

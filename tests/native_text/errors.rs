@@ -18,14 +18,41 @@ fn every_mistake_has_its_code_and_line() {
         // The file.
         ("pump (motor)", &[(UnexpectedToken, 1)]),
         ("input a\nprogram p", &[(UnexpectedToken, 2)]),
-        ("program p\nprogram q", &[(UnexpectedToken, 2)]),
+        ("program p\nprogram q : r\nprogram s", &[(UnexpectedToken, 3)]),
         ("program", &[(UnexpectedToken, 1)]),
         ("program rung", &[(UnexpectedToken, 1)]),
         ("rung\na\ninput a", &[(UnexpectedToken, 3)]),
-        ("input a\n;\nvar b", &[(UnexpectedCharacter, 2)]),
+        ("input a\n;\nvar b", &[(UnexpectedToken, 2)]),
         ("input a\n!!\u{7}\u{7} ~\nvar b", &[(UnexpectedCharacter, 2), (UnexpectedCharacter, 2)]),
-        ("function_block f\nrung\na", &[(UnexpectedToken, 1)]),
-        ("global a", &[(UnexpectedToken, 1)]),
+        ("rung\na\nfunction_block f", &[(UnexpectedToken, 3)]),
+        (
+            "task t\nglobal a\nregisters()\ntype t : INT",
+            &[(UnexpectedToken, 2), (UnexpectedToken, 3), (UnexpectedToken, 4)],
+        ),
+        ("registers()\nregisters()", &[(DuplicateClause, 2)]),
+        ("registers(hreg)\nregisters", &[(UnexpectedToken, 1), (UnexpectedToken, 2)]),
+        ("task t(interval := 1ms, interval := 2ms,\nphase := 1)", &[(DuplicateClause, 1), (UnexpectedToken, 2)]),
+        ("program p with", &[(UnexpectedToken, 1)]),
+        ("program p : q\nvar a", &[(UnexpectedToken, 2)]),
+        ("function f :", &[(UnexpectedToken, 1)]),
+        // Types.
+        (
+            "type\ntype t\ntype t :\ntype `t` : (",
+            &[(UnexpectedToken, 2), (UnexpectedToken, 3), (UnexpectedToken, 4), (UnexpectedToken, 4)],
+        ),
+        ("type t : (a b)", &[(UnexpectedToken, 1)]),
+        ("type t : (a,\nvar b", &[(UnexpectedToken, 2)]),
+        ("type t : struct x end_struct", &[(UnexpectedToken, 1)]),
+        ("type t : struct x : INT\nvar b", &[(UnexpectedToken, 2)]),
+        (
+            "var a : array\nvar b : array [1]\nvar c : array [1..2] INT",
+            &[(UnexpectedToken, 2), (UnexpectedToken, 2), (UnexpectedToken, 3)],
+        ),
+        (
+            "var a := [1, 2\nvar b := [1 2]\nvar c := [2(3, 4)]",
+            &[(Unclosed, 1), (UnexpectedToken, 2), (UnexpectedToken, 3)],
+        ),
+        ("var a := (x := 1, 2)\nvar b := (x := 1, y)", &[(UnexpectedToken, 1), (UnexpectedToken, 2)]),
         // Declarations.
         ("input", &[(UnexpectedToken, 1)]),
         ("input a,", &[(UnexpectedToken, 1)]),
@@ -44,7 +71,6 @@ fn every_mistake_has_its_code_and_line() {
         ("var a at %IX1x", &[(BadAddress, 1)]),
         ("var a at %", &[(BadAddress, 1)]),
         ("var a = 5", &[(UnexpectedToken, 1)]),
-        ("var a : array [0..9] of INT\nvar b", &[(UnexpectedToken, 1)]),
         ("var input : BOOL", &[(UnexpectedToken, 1), (UnexpectedToken, 1)]),
         ("var `a : BOOL\nvar b", &[(Unclosed, 1)]),
         ("var `` : BOOL", &[(UnexpectedToken, 1)]),
@@ -75,10 +101,38 @@ fn every_mistake_has_its_code_and_line() {
         ("rung\n{a b}", &[(UnexpectedToken, 2)]),
         ("rung\n{1 := 2}", &[(UnexpectedToken, 2)]),
         ("rung\n{a := }", &[(UnexpectedToken, 2)]),
-        ("rung\n{a := 1;}", &[(UnexpectedCharacter, 2)]),
+        ("rung\n{a := 1;\nb := 2}", &[(UnexpectedToken, 3)]),
+        ("rung\n{a > 1;}", &[(UnexpectedToken, 2)]),
+        (
+            "rung\n{a := 1;\nb > 2;\nc := ;\nd := 4;\nt1(;\n}",
+            &[(UnexpectedToken, 3), (UnexpectedToken, 4), (UnexpectedToken, 6)],
+        ),
+        (
+            "rung\n{IF a\nb := 1; ELSE c := ;\nEND_IF; FOR TO\nEND_FOR; d := ;}",
+            &[(UnexpectedToken, 3), (UnexpectedToken, 4), (UnexpectedToken, 5)],
+        ),
+        (
+            "rung\n{IF a THEN b := ;\nELSIF c d\nEND_IF; e := ;}",
+            &[(UnexpectedToken, 2), (UnexpectedToken, 3), (UnexpectedToken, 4)],
+        ),
+        ("rung\n{IF a THEN b := 1;}", &[(UnexpectedToken, 2)]),
+        ("rung\n{END_IF;\nb := ;}", &[(UnexpectedToken, 2)]),
+        ("rung\n{b := 1; END_IF;\nb := ;}", &[(UnexpectedToken, 2), (UnexpectedToken, 3)]),
+        (
+            "rung\n{CASE a OF 1 b := 1;\nEND_CASE;\nCASE a OF 1: b; END_CASE;}",
+            &[(UnexpectedToken, 2), (UnexpectedToken, 4)],
+        ),
+        (
+            "rung\n{a := 1;\nWHILE a < 5 DO a := a + 1; END_WHILE;\nREPEAT IF a THEN b := 1; END_IF; UNTIL a END_REPEAT; c := ;}",
+            &[(UnboundedLoop, 3), (UnboundedLoop, 4), (UnexpectedToken, 4)],
+        ),
+        ("rung\n{f(x => y)}", &[(UnexpectedToken, 2)]),
+        ("rung\n{f(1 => y);}", &[(UnexpectedToken, 2)]),
+        ("rung\n{fb.t1(x)}", &[(UnexpectedToken, 2)]),
         ("rung\n{ABS(a b)}", &[(UnexpectedToken, 2)]),
-        ("rung\n{a[1]}", &[(UnexpectedToken, 2)]),
-        ("rung\na[1]", &[(UnexpectedToken, 2)]),
+        ("rung\n{a[1}", &[(Unclosed, 2)]),
+        ("rung\na[]", &[(UnexpectedToken, 2)]),
+        ("rung\na[1 2]", &[(UnexpectedToken, 2)]),
         ("rung\na := 1", &[(UnexpectedToken, 2)]),
         ("rung\na > 1", &[(UnexpectedToken, 2)]),
         ("rung\na AND b", &[(UnexpectedToken, 2)]),
@@ -115,10 +169,10 @@ fn what_is_sound_behind_a_mistake_is_read() {
         parse("program p\ninput 5\ninput a\nrung r1\n[ a ( ]\nrung r2\n{a := 99zz} (b)\nrung r3\na");
     assert_eq!(diagnostics.len(), 3);
     assert_eq!(program.name.text, "p");
-    assert_eq!(program.variables.len(), 1);
-    let names: Vec<_> = program.rungs.iter().map(|rung| rung.name.as_ref().unwrap().text.as_str()).collect();
+    assert_eq!(program.units[0].variables.len(), 1);
+    let names: Vec<_> = program.units[0].rungs.iter().map(|rung| rung.name.as_ref().unwrap().text.as_str()).collect();
     assert_eq!(names, ["r2", "r3"]);
-    assert_eq!(program.rungs[0].circuit.branches[0].elements.len(), 2);
+    assert_eq!(program.units[0].rungs[0].circuit.branches[0].elements.len(), 2);
 }
 
 #[test]
@@ -133,14 +187,14 @@ fn mistakes_come_with_help() {
         ),
         ("var a := 10ms", "`10ms`: `m` is not a digit in base 10", "a duration starts with T#, such as T#10ms"),
         ("var rung", "expected the name of a variable, found `rung`", "`rung` is a name only in back quotes"),
-        ("var task", "`task` is kept for a later version of the language", "in back quotes, `task` is a name"),
+        ("var task", "expected the name of a variable, found `task`", "`task` is a name only in back quotes"),
         ("rung r1 a (b)", "expected a title or a new line", "begin the circuit on the line after `rung`"),
         (
             "var a = 5",
             "expected a clause, another declaration or a rung, found `=`",
             "an initial value is given with :=",
         ),
-        ("rung\na;", "`;` (U+003B) has no meaning here", "nothing ends with a semicolon here"),
+        ("rung\na;", "expected an element, found `;`", "nothing ends with a semicolon here"),
     ];
     for (text, message, hint) in cases {
         let (_, diagnostics) = parse(text);
@@ -162,5 +216,5 @@ fn too_many_mistakes_end_the_reading() {
     let (program, diagnostics) = parse(&format!("{}\nvar good", "var 1\n".repeat(100_000)));
     assert_eq!(diagnostics.len(), MOST_DIAGNOSTICS + 1);
     assert_eq!(diagnostics.last().unwrap().code, TooManyDiagnostics);
-    assert_eq!(program.variables, []);
+    assert_eq!(program.units[0].variables, []);
 }

@@ -99,6 +99,38 @@ const TOKENS: &[&str] = &[
     ";",
     "\u{a0}",
     "global",
+    "type",
+    "struct",
+    "end_struct",
+    "array [",
+    "..",
+    "of",
+    "registers(",
+    "task",
+    "with",
+    "function",
+    "function_block",
+    "inout",
+    "temp",
+    "program p : q",
+    "IF a THEN",
+    "ELSIF",
+    "ELSE",
+    "END_IF",
+    "CASE x OF",
+    "END_CASE",
+    "FOR i := 1 TO",
+    "DO",
+    "END_FOR",
+    "WHILE",
+    "END_WHILE",
+    "EXIT",
+    "RETURN",
+    "a := 1;",
+    "f(a, x := 1, Q => b);",
+    "colour#red",
+    "a[1]",
+    "8(0)",
 ];
 
 const EXAMPLE: &str = include_str!("example.rung");
@@ -183,7 +215,7 @@ proptest! {
 
 #[test]
 fn nesting_is_read_to_the_limit_and_no_deeper() {
-    let kinds: [(&str, &str, &str); 7] = [
+    let kinds: [(&str, &str, &str); 8] = [
         ("", "[ ", "] "),
         ("", "b(x := [ ", "]) "),
         ("{a := ", "(", ")"),
@@ -191,6 +223,7 @@ fn nesting_is_read_to_the_limit_and_no_deeper() {
         ("{a := ", "-", ""),
         ("{a := ", "1 + (", ")"),
         ("{a := ", "f(a, ", ")"),
+        ("{a := ", "a[", "]"),
     ];
     for (before, open, close) in kinds {
         // The last operand is a level of its own, and so is each sum.
@@ -209,10 +242,36 @@ fn nesting_is_read_to_the_limit_and_no_deeper() {
             let (program, diagnostics) = parse(&nested(depth));
             let codes: Vec<_> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
             assert_eq!(codes, [Code::TooDeep], "{open}");
-            assert_eq!(program.rungs.len(), 2, "{open}: reading goes on behind what is too deep");
+            assert_eq!(program.units[0].rungs.len(), 2, "{open}: reading goes on behind what is too deep");
         }
         let unclosed = open.replace("- ", "-").repeat(100_000);
         assert_eq!(codes(&format!("rung\n{before}{unclosed}")).len(), 1, "{open}");
+    }
+}
+
+#[test]
+fn statements_and_initial_values_nest_to_the_limit_and_no_deeper() {
+    let kinds = [
+        ("rung\n{", "IF a THEN ", "b := 1; ", "END_IF; ", "}\nrung\na"),
+        ("rung\n{", "IF a THEN ELSE ", "b := 1; ", "END_IF; ", "}\nrung\na"),
+        ("rung\n{", "CASE a OF 1: ", "b := 1; ", "END_CASE; ", "}\nrung\na"),
+        ("rung\n{", "FOR a := 1 TO 2 DO ", "b := 1; ", "END_FOR; ", "}\nrung\na"),
+        ("var a := ", "[", "", "]", "\nrung\na\nrung\na"),
+        ("var a := [2", "(2 + (", "1", "))", "]\nrung\na\nrung\na"),
+        ("var a := ", "(x := ", "1", ")", "\nrung\na\nrung\na"),
+    ];
+    for (before, open, inner, close, after) in kinds {
+        let nested = |depth: usize| format!("{before}{}{inner}{}{after}", open.repeat(depth), close.repeat(depth));
+        print_and_check(&parse_well(&nested(MAXIMUM_DEPTH / 2 - 1)));
+        for depth in [MAXIMUM_DEPTH + 1, 100_000] {
+            let (program, diagnostics) = parse(&nested(depth));
+            let codes: Vec<_> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+            assert_eq!(codes, [Code::TooDeep], "{open}");
+            assert!(!program.units[0].rungs.is_empty(), "{open}: reading goes on behind what is too deep");
+        }
+        let codes = |text: &str| parse(text).1.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>();
+        assert!(!codes(&format!("{before}{}", open.repeat(100_000))).is_empty(), "{open}");
+        assert!(!codes(&format!("{before}{}", close.repeat(100_000))).is_empty(), "{close}");
     }
 }
 
@@ -231,16 +290,16 @@ fn long_chains_of_operators_are_limited_and_long_series_are_not() {
     for terms in [MAXIMUM_DEPTH, 1_000_000] {
         let (program, diagnostics) = parse(&sum(terms));
         assert_eq!(diagnostics.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>(), [Code::TooDeep]);
-        assert_eq!(program.rungs[0].circuit.branches[0].elements.len(), 2);
+        assert_eq!(program.units[0].rungs[0].circuit.branches[0].elements.len(), 2);
     }
     let series = parse_well(&format!("rung\n{}", "a ".repeat(100_000)));
-    assert_eq!(series.rungs[0].circuit.branches[0].elements.len(), 100_000);
+    assert_eq!(series.units[0].rungs[0].circuit.branches[0].elements.len(), 100_000);
     let arguments = parse_well(&format!("rung\n{{f({}a)}}", "a, ".repeat(100_000)));
     print_and_check(&arguments);
     let branches = parse_well(&format!("rung\n{}", "| ".repeat(100_000)));
-    assert_eq!(branches.rungs[0].circuit.branches.len(), 100_001);
+    assert_eq!(branches.units[0].rungs[0].circuit.branches.len(), 100_001);
     let members = parse_well(&format!("rung\na{}", ".b".repeat(100_000)));
-    assert_eq!(members.rungs.len(), 1);
+    assert_eq!(members.units[0].rungs.len(), 1);
 }
 
 #[test]
@@ -251,7 +310,7 @@ fn clauses_behind_many_names_do_not_multiply() {
     assert_eq!(diagnostics.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>(), [Code::FileTooLarge]);
     let (_, diagnostics) = parse(&format!("var {names} := {initial}"));
     assert!(diagnostics.iter().any(|diagnostic| diagnostic.code == Code::FileTooLarge));
-    assert_eq!(parse_well(&format!("var {names} : BOOL")).variables.len(), 50_000);
+    assert_eq!(parse_well(&format!("var {names} : BOOL")).units[0].variables.len(), 50_000);
 }
 
 /// 50 MB, or a tenth of it where the compiler has not optimised.
@@ -262,7 +321,7 @@ fn a_large_file_is_read_whole() {
                 [ a_contact_of_some_length | another_contact_of_some_length ] /third_contact (and_a_coil_at_the_end)\n";
     let count = size / rung.len();
     let program = parse_well(&rung.repeat(count));
-    assert_eq!((program.rungs.len(), program.comments.len()), (count, count));
+    assert_eq!((program.units[0].rungs.len(), program.comments.len()), (count, count));
     let text = native::print(&program);
     assert!(text.len() > size);
 }
@@ -285,12 +344,12 @@ fn marks_breaks_and_nuls_of_other_systems() {
 
     let (kept, problem) = *Source::decode("x.rung", b"input a\n\0input b").unwrap_err();
     assert_eq!(problem.code, Code::NotText);
-    assert_eq!(native::parse(&kept).program.variables.len(), 1);
+    assert_eq!(native::parse(&kept).program.units[0].variables.len(), 1);
     let (_, diagnostics) = parse("input a\n\0");
     assert_eq!(diagnostics[0].code, Code::UnexpectedCharacter);
 
     // A byte order mark in the middle is no blank.
     assert_eq!(parse("input \u{feff}a").1[0].code, Code::UnexpectedCharacter);
-    let title = parse_well("rung \"a\"\r\n  a\r\n").rungs.remove(0);
+    let title = parse_well("rung \"a\"\r\n  a\r\n").units[0].rungs.remove(0);
     assert_eq!(title.title.as_deref(), Some("a"));
 }

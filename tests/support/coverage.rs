@@ -4,7 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use rung::elementary::Elementary;
-use rung::ladder::{Branch, Circuit, ElementKind, Expression, ExpressionKind, Program, Reference, Root, Step, Wire};
+use rung::ladder::library::StandardBlock;
+use rung::ladder::{
+    BlockCall, Branch, Circuit, ElementKind, Expression, ExpressionKind, Program, Reference, Root, Statement,
+    StatementKind, Step, TypeKind, UnitKind, Wire,
+};
 
 use super::oracle::Activity;
 
@@ -35,13 +39,37 @@ impl Coverage {
 
     /// Adds what one program is made of.
     pub(crate) fn add_program(&mut self, program: &Program) {
-        for variable in &program.variables {
-            let ty = variable.type_name.as_ref().map_or(Elementary::Bool.name(), |name| &name.text);
-            self.saw(&format!("declared {ty}"));
+        self.saw_if(program.registers.is_some(), "sizes of the register machine");
+        program.types.iter().for_each(|declared| {
+            self.saw(match declared.kind {
+                TypeKind::Alias { .. } => "type with another name",
+                TypeKind::Structure(_) => "type structure",
+                TypeKind::Enumeration { .. } => "type enumeration",
+            })
+        });
+        for unit in &program.units {
+            self.saw(match unit.kind {
+                UnitKind::Program { .. } => "unit program",
+                UnitKind::FunctionBlock => "unit function block",
+                UnitKind::Function { .. } => "unit function",
+            });
+        }
+        program.instances.iter().for_each(|_| self.saw("named instance of a program"));
+        for variable in program.globals.iter().chain(program.units.iter().flat_map(|unit| &unit.variables)) {
+            let array = variable.ty.as_ref().is_some_and(|ty| !ty.dimensions.is_empty());
+            let ty = variable.ty.as_ref().map_or(Elementary::Bool.name(), |ty| &ty.name.text);
+            let ty = if Elementary::from_name(ty).is_some() || StandardBlock::from_name(ty).is_some() {
+                ty
+            } else {
+                "own type"
+            };
+            self.saw(&format!("declared {}{ty}", if array { "array of " } else { "" }));
+            self.saw(&format!("declared {:?}", variable.class));
+            self.saw_if(variable.initial.is_some(), "declared with an initial value");
             self.saw_if(variable.retain, "declared retain");
             self.saw_if(variable.address.is_some(), "declared at an address");
         }
-        for rung in &program.rungs {
+        for rung in program.rungs() {
             self.saw_if(!rung.enabled, "rung that is off");
             self.add_circuit(&rung.circuit);
         }
@@ -78,26 +106,60 @@ impl Coverage {
                     }
                     ElementKind::Parallel(circuit) => self.add_circuit(circuit),
                     ElementKind::Jump { .. } | ElementKind::Return => {}
-                    ElementKind::Block(call) => {
-                        self.saw_if(call.power_output.is_some(), "call with a chosen power output");
-                        for argument in &call.arguments {
-                            match &argument.wire {
-                                Wire::Value(value) => {
-                                    self.saw("pin with a value");
-                                    self.add_expression(value);
-                                }
-                                Wire::Circuit(circuit) => {
-                                    self.saw("pin with a circuit");
-                                    self.add_circuit(circuit);
-                                }
-                                Wire::Output(target) => {
-                                    self.saw("pin with an output");
-                                    self.add_reference(target);
-                                }
-                            }
-                        }
-                    }
+                    ElementKind::Block(call) => self.add_call(call),
+                    ElementKind::Statements(statements) => self.add_statements(statements),
                 }
+            }
+        }
+    }
+
+    fn add_call(&mut self, call: &BlockCall) {
+        self.saw_if(call.power_output.is_some(), "call with a chosen power output");
+        for argument in &call.arguments {
+            self.saw_if(argument.pin.key() == "en", "pin EN");
+            self.saw_if(argument.pin.key() == "eno", "pin ENO");
+            match &argument.wire {
+                Wire::Value(value) => {
+                    self.saw("pin with a value");
+                    self.add_expression(value);
+                }
+                Wire::Circuit(circuit) => {
+                    self.saw("pin with a circuit");
+                    self.add_circuit(circuit);
+                }
+                Wire::Output(target) => {
+                    self.saw("pin with an output");
+                    self.add_reference(target);
+                }
+            }
+        }
+    }
+
+    fn add_statements(&mut self, statements: &[Statement]) {
+        for statement in statements {
+            match &statement.kind {
+                StatementKind::Assignment { target, value } => {
+                    self.add_reference(target);
+                    self.add_expression(value);
+                }
+                StatementKind::Call(call) => self.add_call(call),
+                StatementKind::If { branches, otherwise } => {
+                    for branch in branches {
+                        self.add_expression(&branch.condition);
+                        self.add_statements(&branch.body);
+                    }
+                    self.add_statements(otherwise);
+                }
+                StatementKind::Case { selector, branches, otherwise } => {
+                    self.add_expression(selector);
+                    branches.iter().for_each(|branch| self.add_statements(&branch.body));
+                    self.add_statements(otherwise);
+                }
+                StatementKind::For { variable, body, .. } => {
+                    self.add_reference(variable);
+                    self.add_statements(body);
+                }
+                StatementKind::Exit | StatementKind::Return => {}
             }
         }
     }
@@ -119,6 +181,7 @@ impl Coverage {
                 self.saw(&format!("function {}", function.text));
                 arguments.iter().for_each(|argument| self.add_expression(&argument.value));
             }
+            ExpressionKind::Array(_) | ExpressionKind::Structure(_) => self.saw("initial value of many"),
         }
     }
 
@@ -128,6 +191,7 @@ impl Coverage {
             self.saw(match step {
                 Step::Member(_) => "operand member",
                 Step::Bit(..) => "operand bit",
+                Step::Index(..) => "operand index",
             });
         }
     }

@@ -3,8 +3,9 @@
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
 use rung::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
-    Name, Origin, Program, Reference, Root, Rung, Step, Variable, VariableClass, Wire,
+    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Dimension, Element, ElementKind, Expression,
+    ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Step, TypeReference, UnaryOperator,
+    Variable, VariableClass, Wire,
 };
 use rung::source::Span;
 
@@ -18,7 +19,7 @@ pub(crate) fn name(text: &str) -> Name {
 
 /// A program without variables and rungs.
 pub(crate) fn program(text: &str) -> Program {
-    Program { origin: Origin::Native, name: name(text), variables: Vec::new(), rungs: Vec::new(), comments: Vec::new() }
+    Program::of_one(Origin::Native, name(text), Vec::new(), Vec::new())
 }
 
 /// A declaration with neither address nor initial value.
@@ -26,12 +27,19 @@ pub(crate) fn variable(class: VariableClass, text: &str, ty: Elementary) -> Vari
     Variable {
         class,
         name: name(text),
-        type_name: Some(name(ty.name())),
+        ty: Some(TypeReference::of_name(name(ty.name()))),
         address: None,
         initial: None,
         retain: false,
         span: NOWHERE,
     }
+}
+
+/// A declaration of an array with one dimension, from index 0.
+pub(crate) fn array(class: VariableClass, text: &str, count: u32, ty: Elementary) -> Variable {
+    let dimension = Dimension { first: integer(0), last: integer(i128::from(count) - 1) };
+    let ty = TypeReference { dimensions: vec![dimension], ..TypeReference::of_name(name(ty.name())) };
+    Variable { ty: Some(ty), ..variable(class, text, Elementary::Bool) }
 }
 
 /// A rung of elements in series.
@@ -70,11 +78,17 @@ pub(crate) fn coil(kind: CoilKind, text: &str) -> Element {
     element(ElementKind::Coil { kind, target: reference(text) })
 }
 
-/// A reference to a name or, with a dot, to a member.
+/// A reference to a name or, with a dot, to a member, or, with a number in brackets, to an element.
 pub(crate) fn reference(text: &str) -> Reference {
-    let (root, member) = text.split_once('.').map_or((text, None), |(root, member)| (root, Some(member)));
-    let steps = member.map(|member| Step::Member(name(member))).into_iter().collect();
-    Reference { root: Root::Name(name(root)), steps, span: NOWHERE }
+    let (root, step) = if let Some((root, index)) = text.strip_suffix(']').and_then(|text| text.split_once('[')) {
+        let index = index.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
+        (root, Some(Step::Index(vec![integer(index)], NOWHERE)))
+    } else if let Some((root, member)) = text.split_once('.') {
+        (root, Some(Step::Member(name(member))))
+    } else {
+        (text, None)
+    };
+    Reference { root: Root::Name(name(root)), steps: step.into_iter().collect(), span: NOWHERE }
 }
 
 /// An expression that reads such a reference.
@@ -87,6 +101,13 @@ pub(crate) fn expression(kind: ExpressionKind) -> Expression {
     Expression { kind, span: NOWHERE }
 }
 
+/// A literal without a type, behind the operator where it is negative.
+pub(crate) fn integer(value: i128) -> Expression {
+    let magnitude = Literal::Integer { value: value.unsigned_abs(), base: 10, ty: None };
+    let magnitude = expression(ExpressionKind::Literal(magnitude));
+    if value < 0 { expression(ExpressionKind::Unary(UnaryOperator::Negate, Box::new(magnitude))) } else { magnitude }
+}
+
 /// A wired pin.
 pub(crate) fn argument(pin: &str, wire: Wire) -> Argument {
     Argument { pin: name(pin), wire, span: NOWHERE }
@@ -95,7 +116,7 @@ pub(crate) fn argument(pin: &str, wire: Wire) -> Argument {
 /// A call that declares its instance.
 pub(crate) fn call(instance: &str, block: StandardBlock, arguments: Vec<Argument>) -> Element {
     element(ElementKind::Block(BlockCall {
-        instance: name(instance),
+        instance: reference(instance),
         type_name: Some(name(block.name())),
         arguments,
         power_output: None,

@@ -35,7 +35,7 @@ pub(crate) fn random_program(seed: u64) -> Program {
     }
     // Every instance is called, or its members could not be named.
     while !generator.pending.is_empty() {
-        let place = generator.program.rungs.len();
+        let place = generator.program.units[0].rungs.len();
         generator.rung(place);
     }
     generator.add_jumps();
@@ -105,7 +105,7 @@ impl Generator {
             enabled: !self.dice.percent(4),
             ..drawing::rung(elements)
         };
-        self.program.rungs.push(rung);
+        self.program.units[0].rungs.push(rung);
     }
 
     /// A reference to something of a type, if there is any. Names come in another case now and then.

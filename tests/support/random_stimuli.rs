@@ -32,7 +32,7 @@ impl Stimuli {
             if let Type::Elementary(ty) = variable.ty {
                 // Some flicker, some stay long enough for a timer.
                 let percent = *dice.pick(&[50, 20, 8, 3]);
-                inputs.push(Input { name: variable.name.clone(), ty, percent, value: variable.initial });
+                inputs.push(Input { name: variable.name.clone(), ty, percent, value: variable.initial.value(ty) });
             }
         }
         // A controller that has been running for ages must still add times right.

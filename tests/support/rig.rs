@@ -114,6 +114,12 @@ impl<'a> Rig<'a> {
             }
         }
         let first = &self.engines[0];
+        let fault = self.layout.slots().iter().find(|slot| slot.name == "#fault");
+        let fault = fault.is_some_and(|slot| slot.read(&first.image).is_true());
+        if fault != self.oracle.fault() {
+            let values = format!("{} evaluator\n{fault} {}\n", self.oracle.fault(), first.name);
+            return Err(Difference { name: "#fault".to_owned(), values });
+        }
         match self.engines.iter().find(|engine| engine.image != first.image) {
             None => Ok(()),
             Some(engine) => {

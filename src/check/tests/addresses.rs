@@ -82,8 +82,10 @@ fn variables_at_one_address_share_storage_and_the_initial_value() {
         memory("b", "INT").at("%MW2").starting(int(7)),
         memory("c", "INT").at("%MW2"),
     ]));
-    let found: Vec<_> =
-        checked.variables()[1..].iter().map(|variable| (variable.shares, variable.initial.as_integer())).collect();
+    let found: Vec<_> = checked.variables()[1..]
+        .iter()
+        .map(|variable| (variable.shares, variable.initial.value(Elementary::Int).as_integer()))
+        .collect();
     assert_eq!(found, [(None, Some(7)), (Some(VariableId(1)), Some(7)), (Some(VariableId(1)), Some(7))]);
 }
 

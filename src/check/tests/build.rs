@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use crate::elementary::Elementary;
 use crate::ladder::{
     Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind,
-    Expression, ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Step, UnaryOperator, Variable,
-    VariableClass, Width, Wire,
+    Expression, ExpressionKind, Literal, Name, Origin, Program, Reference, Root, Rung, Step, TypeReference,
+    UnaryOperator, Variable, VariableClass, Width, Wire,
 };
 use crate::source::Span;
 
@@ -64,11 +64,11 @@ pub(super) fn reference(text: &str) -> Reference {
 
 fn declared(class: VariableClass, text: &str, ty: Option<&str>) -> Variable {
     let name = name(text);
-    let type_name = ty.map(self::name);
+    let ty = ty.map(|ty| TypeReference::of_name(self::name(ty)));
     Variable {
         class,
         name,
-        type_name,
+        ty,
         address: None,
         initial: None,
         retain: false,
@@ -109,7 +109,7 @@ impl Declare for Variable {
     }
 
     fn typed(self, ty: &str) -> Self {
-        Self { type_name: Some(name(ty)), ..self }
+        Self { ty: Some(TypeReference::of_name(name(ty))), ..self }
     }
 
     fn retained(self) -> Self {
@@ -242,7 +242,8 @@ pub(super) fn call(text: &str, arguments: Vec<Argument>) -> Element {
 pub(super) fn call_through(text: &str, arguments: Vec<Argument>, power: Option<&str>) -> Element {
     let (instance, ty) = text.split_once(':').map_or((text, None), |(instance, ty)| (instance, Some(ty)));
     let power_output = power.map(name);
-    let call = BlockCall { instance: name(instance), type_name: ty.map(name), arguments, power_output };
+    let call =
+        BlockCall { instance: Reference::of_name(name(instance)), type_name: ty.map(name), arguments, power_output };
     element(ElementKind::Block(call), text)
 }
 
@@ -264,7 +265,7 @@ pub(super) fn off(rung: Rung) -> Rung {
 }
 
 pub(super) fn program(variables: Vec<Variable>, rungs: Vec<Rung>) -> Program {
-    Program { origin: Origin::Native, name: name("test"), variables, rungs, comments: Vec::new() }
+    Program::of_one(Origin::Native, name("test"), variables, rungs)
 }
 
 pub(super) fn imported(program: Program) -> Program {

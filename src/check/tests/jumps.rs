@@ -26,7 +26,7 @@ fn a_jump_is_resolved_to_a_rung_that_runs_or_else_the_next_that_does() {
     ];
     for (jump, resting, expected) in cases {
         let checked = clean(&rungs(vec![open("_a"), jump], resting));
-        assert_eq!(checked.rungs()[0].circuit.branches[0].elements[1], expected, "{resting:?}");
+        assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[1], expected, "{resting:?}");
     }
 }
 
@@ -34,7 +34,7 @@ fn a_jump_is_resolved_to_a_rung_that_runs_or_else_the_next_that_does() {
 fn a_jump_backward_or_to_its_own_rung_says_why_it_cannot_be() {
     let jumping = |target: &str| {
         let mut program = rungs(vec![open("_a"), coil_of(CoilKind::Set, "_b")], [true, false, false]);
-        program.rungs[2] = named("r30", vec![open("_a"), jump(target)]);
+        program.units[0].rungs[2] = named("r30", vec![open("_a"), jump(target)]);
         program
     };
     for target in ["r10", "R20", "r30"] {
@@ -68,7 +68,7 @@ fn a_jump_ends_its_branch_and_stands_in_no_circuit_at_a_pin() {
         network(vec![between("", first, "w1"), between("w1", vec![coil_of(CoilKind::Set, "_b")], "")])
     };
     let mut to_node = rungs(vec![], [false; 3]);
-    to_node.rungs[0] = fed(vec![open("_a"), jump("r20")]);
+    to_node.units[0].rungs[0] = fed(vec![open("_a"), jump("r20")]);
     let circuit = wired("IN", vec![open("_a"), leave()]);
     let at_pin = rungs(vec![open("_a"), call("_t:TON", vec![circuit])], [false; 3]);
     let behind = vec![open("_a"), jump("r20"), coil_of(CoilKind::Set, "_b")];

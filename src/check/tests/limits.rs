@@ -83,5 +83,5 @@ fn a_long_name_is_not_repeated_in_full_where_it_is_not_written() {
 #[test]
 fn an_empty_program_runs() {
     let checked = clean(&program(vec![], vec![]));
-    assert_eq!((checked.name(), checked.variables().len(), checked.rungs().len()), ("test", 0, 0));
+    assert_eq!((checked.name(), checked.variables().len(), checked.units()[0].rungs.len()), ("test", 0, 0));
 }

@@ -254,8 +254,8 @@ proptest! {
         prop_assert_eq!(checked.is_none(), diagnostics.iter().any(Diagnostic::is_error), "{:?}", diagnostics);
         if let Some(checked) = checked {
             let drawn: Vec<_> =
-                program.rungs.iter().filter(|rung| rung.enabled).map(|rung| drawn(&rung.circuit)).collect();
-            let kept: Vec<_> = checked.rungs().iter().map(|rung| kept(&rung.circuit)).collect();
+                program.units[0].rungs.iter().filter(|rung| rung.enabled).map(|rung| drawn(&rung.circuit)).collect();
+            let kept: Vec<_> = checked.units()[0].rungs.iter().map(|rung| kept(&rung.circuit)).collect();
             prop_assert_eq!(drawn, kept);
         }
     }

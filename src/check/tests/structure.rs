@@ -3,14 +3,15 @@
 use super::build::*;
 use super::*;
 use crate::check::{
-    Branch, Call, Circuit, Element, Expression, ExpressionKind, Input, NodeId, PinId, Place, VariableId, Wire,
+    Branch, Call, Callee, Circuit, Element, Expression, ExpressionKind, Input, NodeId, Output, PinId, Place, Step,
+    VariableId, Wire,
 };
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{BinaryOperator, CoilKind, ContactKind, Variable};
 
 fn place(variable: u32) -> Place {
-    Place { variable: VariableId(variable), pin: None, bit: None }
+    Place::of(VariableId(variable))
 }
 
 fn contact_on(variable: u32) -> Element {
@@ -44,16 +45,16 @@ fn a_seal_in_becomes_a_tree_with_everything_resolved() {
         Element::Contact { kind: ContactKind::Closed, operand },
         coil_on(2),
     ]);
-    assert_eq!(checked.rungs().len(), 1);
-    assert_eq!(checked.rungs()[0].circuit.branches, [expected]);
-    assert_eq!((checked.rungs()[0].label.as_str(), checked.rungs()[0].nodes), ("r10", 0));
+    assert_eq!(checked.units()[0].rungs.len(), 1);
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches, [expected]);
+    assert_eq!((checked.units()[0].rungs[0].label.as_str(), checked.units()[0].rungs[0].nodes), ("r10", 0));
 }
 
 #[test]
 fn rungs_without_a_name_are_numbered_among_all_rungs_and_those_that_are_off_are_left_out() {
     let rungs = vec![off(rung(vec![coil("_a")])), rung(vec![coil("_a")]), named("last", vec![coil("_b")])];
     let checked = clean(&program(abcd(), rungs));
-    assert_eq!(checked.rungs().iter().map(|rung| rung.label.as_str()).collect::<Vec<_>>(), ["rung 2", "last"]);
+    assert_eq!(checked.units()[0].rungs.iter().map(|rung| rung.label.as_str()).collect::<Vec<_>>(), ["rung 2", "last"]);
 }
 
 #[test]
@@ -83,7 +84,10 @@ fn a_bridge_of_nodes_is_resolved() {
         of(Some(0), vec![coil_on(2)], None),
         of(Some(1), vec![coil_on(3)], None),
     ];
-    assert_eq!((checked.rungs()[0].nodes, checked.rungs()[0].circuit.branches.as_slice()), (2, expected.as_slice()));
+    assert_eq!(
+        (checked.units()[0].rungs[0].nodes, checked.units()[0].rungs[0].circuit.branches.as_slice()),
+        (2, expected.as_slice())
+    );
 }
 
 #[test]
@@ -122,14 +126,15 @@ fn power_feeds_the_first_bool_input_unless_that_is_wired() {
     let read_a = || Expression { ty: Elementary::Bool, kind: ExpressionKind::Read(place(0)) };
     let input_of = |pin, value| Input { pin, wire: Wire::Value(value) };
     let expected = Call {
-        instance: VariableId(3),
-        block: StandardBlock::Ctud,
+        callee: Callee::Standard(StandardBlock::Ctud, place(3)),
+        enable: None,
         power_input: Some(0),
         inputs: vec![input_of(1, read_a()), input_of(4, constant(9))],
-        outputs: vec![(2, place(1))],
-        power_output: Some(0),
+        references: vec![],
+        outputs: vec![(Output::Pin(2), place(1))],
+        power_output: Output::Pin(0),
     };
-    assert_eq!(checked.rungs()[0].circuit.branches[0].elements[1], Element::Call(expected.clone()));
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[1], Element::Call(expected.clone()));
 
     let enabled = vec![
         call_through("c:CTUD", vec![value("PV", int(9)), value("cu", read("a")), to("CV", "n")], Some("qd")),
@@ -137,8 +142,8 @@ fn power_feeds_the_first_bool_input_unless_that_is_wired() {
     ];
     let checked = clean(&program(variables, vec![rung(enabled)]));
     let inputs = vec![input_of(4, constant(9)), input_of(0, read_a())];
-    let expected = Call { power_input: None, power_output: Some(1), inputs, ..expected };
-    assert_eq!(checked.rungs()[0].circuit.branches[0].elements[0], Element::Call(expected));
+    let expected = Call { power_input: None, power_output: Output::Pin(1), inputs, ..expected };
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(expected));
 }
 
 #[test]
@@ -147,17 +152,18 @@ fn a_circuit_may_be_wired_to_a_bool_input() {
     let checked = clean(&program(vec![input("a"), output("q")], vec![rung(vec![timer, coil("q")])]));
     let branch = Branch { from: None, elements: vec![contact_on(0)], to: None };
     let expected = Call {
-        instance: VariableId(2),
-        block: StandardBlock::Ton,
+        callee: Callee::Standard(StandardBlock::Ton, place(2)),
+        enable: None,
         power_input: None,
         inputs: vec![
             Input { pin: 0, wire: Wire::Circuit(Circuit { branches: vec![branch] }) },
             Input { pin: 1, wire: Wire::Value(seconds_of(2)) },
         ],
+        references: vec![],
         outputs: vec![],
-        power_output: Some(0),
+        power_output: Output::Pin(0),
     };
-    assert_eq!(checked.rungs()[0].circuit.branches[0].elements[0], Element::Call(expected));
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(expected));
 }
 
 #[test]
@@ -165,8 +171,8 @@ fn members_are_read_and_written_by_pin() {
     let rungs =
         vec![rung(vec![call("t:TON", vec![]), assign("t.PT", seconds(1))]), rung(vec![assign("_e", read("T.et"))])];
     let checked = clean(&program(vec![memory("_e", "TIME")], rungs));
-    let pin = |pin| Place { pin: Some(pin), ..place(1) };
-    let assignment = |rung: usize, at: usize| checked.rungs()[rung].circuit.branches[0].elements[at].clone();
+    let pin = |pin| Place { path: vec![Step::Pin(pin)], ..place(1) };
+    let assignment = |rung: usize, at: usize| checked.units()[0].rungs[rung].circuit.branches[0].elements[at].clone();
     assert_eq!(assignment(0, 1), Element::Assignment { target: pin(PinId::Input(1)), value: seconds_of(1) });
     let elapsed = Expression { ty: Elementary::Time, kind: ExpressionKind::Read(pin(PinId::Output(1))) };
     assert_eq!(assignment(1, 0), Element::Assignment { target: place(0), value: elapsed });

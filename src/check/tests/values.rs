@@ -2,7 +2,7 @@
 
 use super::build::*;
 use super::*;
-use crate::check::{Element, Expression, ExpressionKind, Place, VariableId};
+use crate::check::{Element, Expression, ExpressionKind, Initial, Place, VariableId};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::{self, BinaryOperator, CoilKind, ContactKind, Variable};
 use BinaryOperator::{Add, And, Divide, Equal, Greater, Modulo, Multiply, Or, Subtract};
@@ -14,14 +14,14 @@ fn assigning(ty: &str, others: Vec<Variable>, value: ladder::Expression) -> Prog
 
 /// What such a program assigns.
 fn assigned(ty: &str, others: Vec<Variable>, value: ladder::Expression) -> Expression {
-    match &clean(&assigning(ty, others, value)).rungs()[0].circuit.branches[0].elements[0] {
+    match &clean(&assigning(ty, others, value)).units()[0].rungs[0].circuit.branches[0].elements[0] {
         Element::Assignment { value, .. } => value.clone(),
         other => panic!("{other:?}"),
     }
 }
 
 fn place(variable: u32) -> Place {
-    Place { variable: VariableId(variable), pin: None, bit: None }
+    Place { variable: VariableId(variable), path: vec![], bit: None }
 }
 
 fn folded(value: Option<Value>) -> Expression {
@@ -169,14 +169,15 @@ fn initial_values_are_constants_of_constants_before_them() {
         memory("x", "DINT").starting(binary(read("b"), Add, int(1))),
     ];
     let checked = clean(&program(variables, vec![rung(vec![assign("x", read("a"))])]));
-    let initial: Vec<_> = checked.variables().iter().map(|variable| variable.initial.as_integer()).collect();
-    assert_eq!(initial, [Some(5), Some(15), Some(16)]);
+    let initial: Vec<_> = checked.variables().iter().map(|variable| variable.initial.clone()).collect();
+    let value = |ty, value| Initial::Value(Value::integer(ty, value).unwrap());
+    assert_eq!(initial, [value(Elementary::Int, 5), value(Elementary::Dint, 15), value(Elementary::Dint, 16)]);
 }
 
 #[test]
 fn a_value_that_tells_a_missing_type_says_so() {
     for (value, ty) in [(seconds(5), "TIME"), (int(5), "INT"), (real(0.5), "REAL")] {
-        let untyped = Variable { type_name: None, ..constant("_c", "BOOL", value) };
+        let untyped = Variable { ty: None, ..constant("_c", "BOOL", value) };
         let found = only(&program(vec![untyped], vec![]));
         assert_eq!((found.code, found.hint), (Code::TypeMismatch, Some(format!("write its type, as in `_c : {ty}`"))));
     }
@@ -251,5 +252,5 @@ fn a_coil_writes_a_bit_of_a_word() {
         Element::Contact { kind: ContactKind::Closed, operand },
         Element::Coil { kind: CoilKind::Plain, target: bit(15) },
     ];
-    assert_eq!(checked.rungs()[0].circuit.branches[0].elements, expected);
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements, expected);
 }

@@ -113,11 +113,13 @@ pub(super) struct Machine<E> {
     _watchdog: Watchdog,
 }
 
-/// How a run ended, and its engine.
+/// How a run ended, and what it left.
 #[derive(Debug)]
 pub(super) struct Outcome<E> {
     pub end: End<Infallible>,
     pub engine: E,
+    /// The image as the last scan left it.
+    pub image: Vec<u8>,
 }
 
 /// Why there is no outcome.
@@ -208,14 +210,14 @@ fn scan_thread<E: Scan>(
         Err(error) => {
             // The starter waits for it, and then for nothing more.
             let _ = started.send(Err(error));
-            return Outcome { end: End::Asked(Ok(())), engine };
+            return Outcome { end: End::Asked(Ok(())), engine, image: image.bytes().to_vec() };
         }
     };
     let scan = schedule_this_thread(Role::Scan);
     let scheduling = Scheduling { scan, tick: ticks.scheduling().to_string(), memory: lock_memory() };
     let Ok(regions) = runs.regions() else {
         let _ = started.send(Err(bad_layout()));
-        return Outcome { end: End::Asked(Ok(())), engine };
+        return Outcome { end: End::Asked(Ok(())), engine, image: image.bytes().to_vec() };
     };
     let _ = started.send(Ok(scheduling));
     let driver = Driver {
@@ -240,7 +242,7 @@ fn scan_thread<E: Scan>(
         teller.tell(image, cycle.now, &shared.untold);
     });
     drop(controller);
-    Outcome { end, engine }
+    Outcome { end, engine, image: image.bytes().to_vec() }
 }
 
 /// Sets an input of a panel.

@@ -9,9 +9,11 @@ use std::time::{Duration, Instant};
 use rung_runtime::Scan;
 use rung_runtime::host::{Histogram, Statistics};
 
+use super::super::tasks;
 use super::machine::{Change, Machine};
 use super::points::{Point, shown};
 use super::{Failure, print, time};
+use crate::logic::image::FAULT;
 
 /// Lines in a second about one variable, and about all of them.
 const MOST_OF_ONE: u32 = 10;
@@ -68,6 +70,9 @@ impl Second {
         }
         self.lines += 1;
         let name = &told.get(change.index)?.name;
+        if name == FAULT {
+            return Some(format!("{}  {}\n", moment(change.now), tasks::FAULT));
+        }
         Some(format!("{}  {name} = {}\n", moment(change.now), shown(change.value)))
     }
 }
@@ -107,6 +112,12 @@ mod tests {
         let (ty, area) = (Elementary::Bool, Area::Output);
         let slot = Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 };
         Point { name: name.to_owned(), slot, key: None }
+    }
+
+    #[test]
+    fn an_index_out_of_range_is_told_in_words() {
+        let line = Second::default().line(&Change { now: 0, index: 0, value: Value::bool(true) }, &[point(FAULT)]);
+        assert_eq!(line, Some(format!("    0.000 s  {}\n", tasks::FAULT)));
     }
 
     #[test]

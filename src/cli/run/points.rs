@@ -57,11 +57,14 @@ pub(super) struct Points {
     pub outputs: Vec<Point>,
     pub variables: Vec<Point>,
     pub blocks: Vec<Block>,
+    /// What is TRUE once an index was out of range.
+    pub fault: Option<Slot>,
 }
 
 impl Points {
     pub(super) fn new(checked: &Checked, layout: &Layout) -> Self {
-        let mut points = Self::default();
+        let fault = layout.fault().map(|slot| layout.slot(slot).clone());
+        let mut points = Self { fault, ..Self::default() };
         let mut keys = KEYS.chars();
         for observed in layout.observed() {
             let slot = layout.slot(observed.slot).clone();
@@ -90,10 +93,16 @@ impl Points {
         self.inputs.iter().find(|input| input.name.eq_ignore_ascii_case(name))
     }
 
-    /// What is told of in plain lines: the outputs and the blocks' powers.
+    /// Whether an index was out of range.
+    pub(super) fn is_faulty(&self, image: &[u8]) -> bool {
+        self.fault.as_ref().is_some_and(|slot| slot.read(image).is_true())
+    }
+
+    /// What is told of in plain lines: the outputs and the blocks' powers, and first that an index was out of range.
     pub(super) fn told(&self) -> Vec<Point> {
         let powers = self.blocks.iter().flat_map(|block| &block.powers);
-        self.outputs.iter().chain(powers).cloned().collect()
+        let fault = self.fault.iter().map(|slot| Point { name: slot.name.clone(), slot: slot.clone(), key: None });
+        fault.chain(self.outputs.iter().chain(powers).cloned()).collect()
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn literal(nanoseconds: i64) -> String {
 }
 
 /// A duration exactly, as it is written on the command line: `1.5s`, `-250ms`, `0s`.
-pub(super) fn exact(nanoseconds: i64) -> String {
+pub(in crate::cli) fn exact(nanoseconds: i64) -> String {
     let (sign, magnitude) = (if nanoseconds < 0 { "-" } else { "" }, nanoseconds.unsigned_abs());
     let units = [(1_000_000_000, "s"), (1_000_000, "ms"), (1_000, "us"), (1, "ns")];
     let (unit, name) = units.into_iter().find(|(unit, _)| magnitude >= *unit).unwrap_or(units[0]);

@@ -16,9 +16,9 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use crossterm::{cursor, execute, queue, style, terminal};
 use rung_runtime::Scan;
 
+use super::Failure;
 use super::machine::{self, Machine, Shared};
 use super::points::{Point, Points};
-use super::{Arguments, Failure};
 use crate::diagnostic::Code;
 use crate::elementary::{Elementary, Value};
 
@@ -29,7 +29,9 @@ const REFRESH: Duration = Duration::from_millis(100);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Title<'a> {
     pub program: &'a str,
-    pub arguments: &'a Arguments,
+    pub engine: &'a str,
+    /// Nanoseconds.
+    pub cycle: i64,
 }
 
 /// Shows a running program until it is over or a key ends it.
@@ -129,8 +131,8 @@ impl View<'_> {
         let lines = frame::lines(
             &frame::State {
                 title: title.program,
-                engine: title.arguments.engine.name(),
-                cycle: title.arguments.cycle,
+                engine: title.engine,
+                cycle: title.cycle,
                 now: shared.now(),
                 statistics: &shared.statistics,
                 points: self.points,

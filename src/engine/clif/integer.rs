@@ -50,6 +50,7 @@ impl Lowering<'_, '_> {
             | Binary::RotateLeft
             | Binary::RotateRight => {}
         }
+        let constant = self.constant(b);
         let (a, b) = (self.value(a), self.value(b));
         match op {
             Binary::And => self.builder.ins().band(a, b),
@@ -75,11 +76,11 @@ impl Lowering<'_, '_> {
             Binary::ShiftLeft => {
                 let value = self.builder.ins().ishl(a, b);
                 let value = self.canonical(ty, value);
-                self.unless_beyond(ty, value, b)
+                self.unless_beyond(ty, value, b, constant)
             }
             Binary::ShiftRight => {
                 let value = self.builder.ins().ushr(a, b);
-                self.unless_beyond(ty, value, b)
+                self.unless_beyond(ty, value, b, constant)
             }
             Binary::RotateLeft | Binary::RotateRight => self.rotate(op, ty, a, b),
             Binary::Divide | Binary::Remainder => unreachable!("done above"),
@@ -163,8 +164,11 @@ impl Lowering<'_, '_> {
         self.canonical(ty, value)
     }
 
-    /// `value`, or 0 where the amount of a shift is the width or more.
-    fn unless_beyond(&mut self, ty: Elementary, value: Value, amount: Value) -> Value {
+    /// `value`, or 0 where the amount of a shift is the width or more; a constant below it is seen not to be.
+    fn unless_beyond(&mut self, ty: Elementary, value: Value, amount: Value, constant: Option<u64>) -> Value {
+        if constant.is_some_and(|amount| amount < u64::from(ty.bits())) {
+            return value;
+        }
         let width = self.integer_constant(types::I32, u64::from(ty.bits()));
         let within = self.builder.ins().icmp(IntCC::UnsignedLessThan, amount, width);
         let zero = self.integer_constant(holder(ty), 0);

@@ -60,6 +60,7 @@ pub(super) fn chunk(
         pointers,
         helpers: params.get(BASES + 1).copied(),
         helper_signature: None,
+        copy_signature: None,
         held: vec![None; end - first],
         uses,
         alive: 0,
@@ -93,6 +94,8 @@ pub(super) struct Lowering<'a, 'f> {
     pub(super) helpers: Option<Value>,
     /// What helpers take and give, once one is called.
     pub(super) helper_signature: Option<SigRef>,
+    /// The same of the one that copies.
+    pub(super) copy_signature: Option<SigRef>,
     /// By instruction of the chunk: what holds its value, once made.
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
@@ -137,6 +140,7 @@ impl Lowering<'_, '_> {
             Op::Call(helper, a, b) => self.call(helper, ty, a, b),
             Op::LoadIndexed(array, index) => self.load_indexed(array, index),
             Op::StoreIndexed(array, index, a) => return self.store_indexed(array, index, a),
+            Op::CopyArray(to, from, condition) => return self.copy_array(to, from, condition),
         };
         let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
         let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
@@ -180,7 +184,8 @@ impl Lowering<'_, '_> {
             | Op::Convert(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
-            | Op::StoreIndexed(..) => None,
+            | Op::StoreIndexed(..)
+            | Op::CopyArray(..) => None,
         }
     }
 
@@ -228,7 +233,8 @@ impl Lowering<'_, '_> {
             | Op::Convert(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
-            | Op::StoreIndexed(..) => unreachable!("operands come before, are no stores, and only the above are late"),
+            | Op::StoreIndexed(..)
+            | Op::CopyArray(..) => unreachable!("operands come before, are no stores, and only the above are late"),
         }
     }
 

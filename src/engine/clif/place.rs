@@ -47,20 +47,25 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
     } else {
         program.section_range(sections.start).start..program.section_range(sections.end - 1).end
     };
-    program.instructions[instructions].iter().filter_map(|instruction| match instruction.op {
-        Op::Load(slot) => Some((false, slot)),
-        Op::Store(slot, _) => Some((true, slot)),
-        // Which element is not known; it counts as one that is not stored, so that wide loads beside it stay.
-        Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => Some((false, program.layout.array(array).first)),
-        Op::Constant(_)
-        | Op::Now
-        | Op::Unary(..)
-        | Op::Binary(..)
-        | Op::Compare(..)
-        | Op::Select(..)
-        | Op::Convert(_)
-        | Op::Call(..) => None,
-    })
+    let first = |array| program.layout.array(array).first;
+    program.instructions[instructions]
+        .iter()
+        .flat_map(move |instruction| match instruction.op {
+            Op::Load(slot) => [Some((false, slot)), None],
+            Op::Store(slot, _) => [Some((true, slot)), None],
+            // Which element is not known; it counts as one that is not stored, so that wide loads beside it stay.
+            Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => [Some((false, first(array))), None],
+            Op::CopyArray(to, from, _) => [Some((false, first(to))), Some((false, first(from)))],
+            Op::Constant(_)
+            | Op::Now
+            | Op::Unary(..)
+            | Op::Binary(..)
+            | Op::Compare(..)
+            | Op::Select(..)
+            | Op::Convert(_)
+            | Op::Call(..) => [None, None],
+        })
+        .flatten()
 }
 
 /// The bytes that were stored lately, as the sections run one after another.

@@ -5,7 +5,7 @@ use cranelift_codegen::settings::Configurable;
 use target_lexicon::Triple;
 
 use super::{BRANCHING, Compiler, flags};
-use crate::engine::disassemble;
+use crate::engine::disassemble::{self, Line};
 use crate::logic::{Binary, Op, Program, random};
 use crate::opt;
 
@@ -36,7 +36,7 @@ fn listed(op: Binary, architecture: &str) -> bool {
     row.is_some_and(|row| row.architectures.iter().any(|name| architecture.starts_with(name)))
 }
 
-/// The branches in a program's code.
+/// The branches in a program's code, calls of helpers left out.
 fn branches(program: &Program, isa: &OwnedTargetIsa, decoded: &mut usize) -> Vec<String> {
     let mut compiler = Compiler::new(program, &**isa);
     let mut branches = Vec::new();
@@ -59,7 +59,8 @@ fn branches(program: &Program, isa: &OwnedTargetIsa, decoded: &mut usize) -> Vec
                 assert!(code.is_empty(), "{}, {}: half an instruction", isa.triple(), program.name);
             }
             *decoded += lines.len();
-            branches.extend(lines.into_iter().filter(|line| line.jumps).map(|line| line.text));
+            let branch = |line: &Line| line.jumps && !(line.calls && chunk.calls_helpers);
+            branches.extend(lines.into_iter().filter(branch).map(|line| line.text));
         }
     }
     branches

@@ -1,7 +1,7 @@
 //! What the functions look like: text, pointers, and loads that are part of the instructions that use them.
 
 use super::place::Stored;
-use super::{ALIVE, BRANCHING, Chunk, Compiler, text};
+use super::{ALIVE, BRANCHING, Chunk, Compiler, MOVED, text};
 use crate::elementary::{Elementary, Value};
 use crate::engine::disassemble;
 use crate::engine::jit::host_isa;
@@ -150,6 +150,7 @@ fn the_page_on_machine_code_lists_what_branches() {
         .collect();
     assert_eq!(rows, expected);
     assert!(page.contains(&format!("At most {ALIVE} values")));
+    assert!(page.contains(&format!("an array of more than {MOVED} bytes")));
     assert!(page.contains(&format!("each {CHUNK_SECTIONS} of them make a chunk")));
 }
 

@@ -45,6 +45,8 @@ pub(super) enum Kind {
     LoadIndexed(Elementary),
     /// The operands are the index, the value and how many elements there are; the target is the first of them.
     StoreIndexed(Elementary),
+    /// The operands are the condition, the first byte to copy and how many there are; the target is the first to set.
+    CopyArray,
 }
 
 impl Kind {
@@ -53,9 +55,13 @@ impl Kind {
     pub(super) fn of(instruction: Instruction, of: Elementary) -> Option<(Self, bool)> {
         let wide = matches!(of, Elementary::Lint | Elementary::Time);
         let kind = match instruction.op {
-            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::LoadIndexed(..) | Op::StoreIndexed(..) => {
-                return None;
-            }
+            Op::Constant(_)
+            | Op::Now
+            | Op::Load(_)
+            | Op::Store(..)
+            | Op::LoadIndexed(..)
+            | Op::StoreIndexed(..)
+            | Op::CopyArray(..) => return None,
             Op::Select(..) => match instruction.ty.size() {
                 1 => Self::Select8,
                 2 => Self::Select16,
@@ -119,6 +125,7 @@ impl Step {
                 self.evaluate(cells);
             }
             Kind::LoadIndexed(..) | Kind::StoreIndexed(..) => self.access(cells),
+            Kind::CopyArray => self.copy(cells),
         }
     }
 
@@ -162,6 +169,15 @@ impl Step {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Copies a whole array, or none of it.
+    #[inline(never)]
+    fn copy(&self, cells: &mut [u8]) {
+        let [condition, from, count] = self.operands.map(|operand| operand as usize);
+        if cells[condition] != 0 {
+            cells.copy_within(from..from + count, self.target as usize);
         }
     }
 

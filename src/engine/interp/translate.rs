@@ -5,27 +5,33 @@
 //! puts into a slot goes there at once if nothing touches the slot before that store.
 
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
-use super::Interpreter;
+use super::access::Accesses;
 use super::gate::{Function, Gate, compare};
 use super::step::{Kind, Step};
+use super::{Interpreter, Part};
 use crate::elementary::{Elementary, Value};
 use crate::logic::image::write;
-use crate::logic::{Array, ArrayId, Binary, Instruction, Op, Program, SlotId, Unary, ValueId};
+use crate::logic::{Array, ArrayId, Binary, Instruction, Op, Program, SlotId, Turn, Unary, ValueId};
 
 /// Constants and the time take eight bytes each, whatever their type.
 const CONSTANT_BYTES: u32 = 8;
 
 pub(super) fn translate(program: &Program) -> Interpreter {
     let mut translator = Translator::new(program);
+    let mut ends = program.tasks.iter().map(|task| task.end as usize).peekable();
     for chunk in program.chunks() {
-        let instructions = program.section_range(chunk.start).start..program.section_range(chunk.end - 1).end;
+        while ends.next_if(|end| *end <= chunk.start).is_some() {
+            translator.end_task();
+        }
         // No value lives beyond its chunk, so every chunk uses the same cells.
         translator.scratch_end = translator.scratch_start;
-        for index in instructions {
+        for index in program.instruction_range(chunk) {
             translator.instruction(index);
         }
     }
+    ends.for_each(|_| translator.end_task());
     translator.finish()
 }
 
@@ -44,6 +50,7 @@ struct Translator<'a> {
     /// Which values may be made of the cell of a slot.
     watchers: BTreeMap<u32, Vec<ValueId>>,
     constants: HashMap<(u32, u64), u32>,
+    tasks: Vec<Part>,
     gates: Vec<Gate>,
     steps: Vec<Step>,
     /// The gates before the last step.
@@ -59,7 +66,7 @@ impl<'a> Translator<'a> {
         let count = program.instructions.len();
         let mut uses = vec![0; count];
         let (mut first_store, mut access_before) = (vec![None; count], vec![0; count]);
-        let mut last_access = vec![0; program.layout.slots().len()];
+        let mut accesses = Accesses::new(&program.layout);
         // The time comes right behind the image, and then a FALSE.
         let mut cells = vec![0; (program.layout.size() + 2 * CONSTANT_BYTES) as usize];
         let mut constants = HashMap::new();
@@ -68,13 +75,20 @@ impl<'a> Translator<'a> {
                 uses[operand.index()] += 1;
             }
             match instruction.op {
-                Op::Load(slot) => last_access[slot.index()] = index + 1,
+                Op::Load(slot) => {
+                    accesses.slot(slot, index + 1);
+                }
                 Op::Store(slot, value) => {
                     first_store[value.index()].get_or_insert(index);
-                    access_before[index] = std::mem::replace(&mut last_access[slot.index()], index + 1);
+                    access_before[index] = accesses.slot(slot, index + 1);
                 }
                 Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => {
-                    last_access[program.layout.array(array).indices()].fill(index + 1);
+                    accesses.array(array, &program.layout, index + 1);
+                }
+                Op::CopyArray(to, from, _) => {
+                    for array in [to, from] {
+                        accesses.array(array, &program.layout, index + 1);
+                    }
                 }
                 Op::Constant(bits) if instruction.ty != Elementary::Bool => {
                     constants.entry((instruction.ty.size(), bits)).or_insert_with(|| {
@@ -97,6 +111,7 @@ impl<'a> Translator<'a> {
             access_before,
             watchers: BTreeMap::new(),
             constants,
+            tasks: Vec::new(),
             gates: Vec::new(),
             steps: Vec::new(),
             gates_placed: 0,
@@ -110,7 +125,16 @@ impl<'a> Translator<'a> {
     fn finish(mut self) -> Interpreter {
         self.cells.resize(self.scratch_most as usize, 0);
         let image_size = self.program.layout.size() as usize;
-        Interpreter { gates: self.gates, steps: self.steps, cells: self.cells, image_size }
+        Interpreter { tasks: self.tasks, gates: self.gates, steps: self.steps, cells: self.cells, image_size }
+    }
+
+    /// Ends the next task: what was made since the last one is its.
+    fn end_task(&mut self) {
+        let (gates, steps) = self.tasks.last().map_or((0, 0), |task| (task.gates.end, task.steps.end));
+        let task = &self.program.tasks[self.tasks.len()];
+        let turn = Turn::of(task, &self.program.layout);
+        self.tasks.push(Part { turn, gates: gates..self.gates.len(), steps: steps..self.steps.len() });
+        self.gates_placed = self.gates.len();
     }
 
     fn instruction(&mut self, index: usize) {
@@ -120,6 +144,7 @@ impl<'a> Translator<'a> {
         match instruction.op {
             Op::Store(slot, stored) => self.store(slot, stored),
             Op::StoreIndexed(array, place, stored) => self.store_indexed(array, place, stored),
+            Op::CopyArray(to, from, condition) => self.copy_array(to, from, condition),
             // What nothing uses is not computed.
             _ if self.uses[index] == 0 => {}
             Op::Constant(bits) if instruction.ty == Elementary::Bool => {
@@ -181,12 +206,20 @@ impl<'a> Translator<'a> {
         let Array { first, count } = self.program.layout.array(array);
         let slot = self.program.layout.slot(first);
         let (start, ty) = (slot.offset, slot.ty);
-        let cells: Vec<u32> = self.watchers.range(start..start + count * ty.size()).map(|(cell, _)| *cell).collect();
-        for cell in cells {
-            self.release(cell, None);
-        }
+        self.release_all(start..start + count * ty.size());
         let [index, value] = [index, value].map(|of| self.values[of.index()].as_cell().unwrap_or_default());
         self.push(Kind::StoreIndexed(ty), [index, value, count], start);
+    }
+
+    fn copy_array(&mut self, to: ArrayId, from: ArrayId, condition: ValueId) {
+        self.settle(condition);
+        let layout = &self.program.layout;
+        let Array { first, count } = layout.array(to);
+        let (target, size) = (layout.slot(first).offset, count * layout.slot(first).ty.size());
+        let start = layout.slot(layout.array(from).first).offset;
+        self.release_all(target..target + size);
+        let condition = self.values[condition.index()].as_cell().unwrap_or_default();
+        self.push(Kind::CopyArray, [condition, start, size], target);
     }
 
     /// A BOOL operation as a function of cells.
@@ -277,6 +310,14 @@ impl<'a> Translator<'a> {
         self.scratch_end = cell + ty.size();
         self.scratch_most = self.scratch_most.max(self.scratch_end);
         cell
+    }
+
+    /// Makes the cells of an array ready to be set.
+    fn release_all(&mut self, bytes: Range<u32>) {
+        let cells: Vec<u32> = self.watchers.range(bytes).map(|(cell, _)| *cell).collect();
+        for cell in cells {
+            self.release(cell, None);
+        }
     }
 
     /// Makes a slot's cell ready to be set to a value: whatever else is made of what it holds gets another cell.

@@ -4,17 +4,35 @@
 #![expect(unsafe_code, reason = "calling compiled code is the JIT's purpose")]
 
 use std::io;
+use std::ops::Range;
 
 use memmap2::{Mmap, MmapMut};
 
 use crate::engine::clif::{BASES, Chunk};
-use crate::engine::helpers::{HELPERS, HelperFunction};
+use crate::engine::helpers::{COPY, HELPERS, HelperFunction};
 
 /// The type of a chunk's function: the image at each base, with the time second.
 type Function = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8);
 
 /// The type of the function of a chunk that calls helpers: it takes the table of them, too.
-type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const HelperFunction);
+type HelpedFunction = unsafe extern "C" fn(*mut u8, i64, *mut u8, *mut u8, *mut u8, *mut u8, *const Table);
+
+/// The table of helpers, as chunks expect it.
+#[repr(C)]
+struct Table {
+    functions: [HelperFunction; COPY],
+    copy: unsafe extern "C" fn(*mut u8, *const u8, usize),
+}
+
+/// What chunks that call helpers are given.
+static TABLE: Table = Table { functions: HELPERS, copy };
+
+/// Copies the elements of an array.
+unsafe extern "C" fn copy(to: *mut u8, from: *const u8, count: usize) {
+    // SAFETY: a chunk passes the first bytes of two arrays of its layout, both `count` bytes long, in the image that it
+    // was called with; see `Code::run`.
+    unsafe { std::ptr::copy(from, to, count) }
+}
 
 /// Installed code.
 #[derive(Debug)]
@@ -73,14 +91,14 @@ impl Code {
         Ok(Self { calls, reach: image_size, _pages: Some(pages) })
     }
 
-    /// Runs every chunk in order.
+    /// Runs some chunks in order.
     ///
     /// # Panics
     /// When the image is too short.
-    pub(super) fn run(&self, image: &mut [u8], now: i64) {
+    pub(super) fn run(&self, chunks: Range<usize>, image: &mut [u8], now: i64) {
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
         let image = image.as_mut_ptr();
-        for Call { entry, bases: [a, b, c, d, e] } in &self.calls {
+        for Call { entry, bases: [a, b, c, d, e] } in &self.calls[chunks] {
             let at = |base: u32| image.wrapping_add(base as usize);
             let (a, b, c, d, e) = (at(*a), at(*b), at(*c), at(*d), at(*e));
             // SAFETY: the chunk reads and writes the slots of its layout, at the pointers' offsets from the image,
@@ -90,7 +108,7 @@ impl Code {
             unsafe {
                 match entry {
                     Entry::Plain(function) => function(a, now, b, c, d, e),
-                    Entry::Helped(function) => function(a, now, b, c, d, e, HELPERS.as_ptr()),
+                    Entry::Helped(function) => function(a, now, b, c, d, e, &raw const TABLE),
                 }
             }
         }

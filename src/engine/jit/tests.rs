@@ -2,13 +2,12 @@
 
 use rung_runtime::Scan;
 
-use super::memory::Code;
 use super::{CompileError, Jit, host_isa};
 use crate::elementary::{Elementary, Value};
 use crate::engine::clif::{BRANCHING, Compiler};
 use crate::engine::disassemble;
 use crate::engine::interp::{Interpreter, Textbook};
-use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, random};
+use crate::logic::{Area, Binary, Builder, LayoutBuilder, Op, Origin, Program, Slot, Task, random};
 use crate::opt;
 
 fn compile(program: &Program) -> Jit {
@@ -21,8 +20,7 @@ fn compile_as_for_riscv64(program: &Program) -> Jit {
     let mut compiler = Compiler::new(program, &*isa).written_for_riscv64();
     let chunks: Result<Vec<_>, _> = program.chunks().into_iter().map(|sections| compiler.chunk(sections)).collect();
     let chunks = chunks.unwrap_or_else(|error| panic!("{}: {error}", program.name));
-    let code = Code::install(&chunks, program.layout.size() as usize).expect("executable memory");
-    Jit { chunks, code }
+    Jit::install(program, chunks).expect("executable memory")
 }
 
 fn agrees(program: &Program, mut jit: Jit, seed: u64) {
@@ -123,6 +121,7 @@ fn the_same_program_gives_the_same_code_however_its_chunks_are_shared_out() {
 fn a_program_without_sections_leaves_the_image_alone() {
     let mut program = random::program(3);
     program.sections.clear();
+    program.tasks = vec![Task::always(0)];
     program.instructions.clear();
     let mut jit = compile(&program);
     let mut image = random::image(&program.layout, 1);
@@ -135,7 +134,10 @@ fn a_program_without_sections_leaves_the_image_alone() {
 #[test]
 #[should_panic(expected = "shorter than the program's layout")]
 fn an_image_that_is_too_short_is_refused() {
-    compile(&random::program(3)).scan(&mut [0; 3], 0);
+    let mut program = random::program(3);
+    // So that it is the code that refuses.
+    program.tasks = vec![Task::always(program.tasks[program.tasks.len() - 1].end)];
+    compile(&program).scan(&mut [0; 3], 0);
 }
 
 #[test]
@@ -196,6 +198,127 @@ fn a_chunk_that_needs_too_many_values_at_one_time_is_refused_at_once() {
         }
         other => panic!("{other:?}"),
     }
+}
+
+/// A program of three tasks, which each count their runs: every 10 ns, every 25 ns, and always.
+fn counting() -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: &str, ty| {
+        let (name, initial) = (name.to_owned(), Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 })
+    };
+    let runs = ["fast", "slow", "always"].map(|name| slot(name, Elementary::Lint));
+    let due = ["#task fast", "#task slow"].map(|name| slot(name, Elementary::Time));
+    let mut logic = Builder::new("counting", layout.finish(None).expect("a small image"));
+    let tasks = [("fast", Some(10), Some(due[0])), ("slow", Some(25), Some(due[1])), ("", None, None)];
+    for (runs, (name, interval, due)) in runs.into_iter().zip(tasks) {
+        let (before, one) = (logic.load(runs), logic.constant(Value::from_bits(Elementary::Lint, 1)));
+        let after = logic.binary(Binary::Add, before, one);
+        logic.store(runs, after);
+        logic.end_section(Origin { label: "r".into(), line: 1 });
+        logic.end_task(name, interval, due);
+    }
+    logic.finish()
+}
+
+#[test]
+fn every_engine_runs_the_tasks_that_are_due_and_no_other() {
+    let program = counting();
+    let optimised = opt::optimise(program.clone());
+    let engines: [Box<dyn Scan>; 4] = [
+        Box::new(Textbook::new(&program)),
+        Box::new(Interpreter::new(&program)),
+        Box::new(compile(&program)),
+        Box::new(compile(&optimised)),
+    ];
+    // By the time of each round: how often each task has run after it, and when the two are due next.
+    let rounds = [
+        (-5, [0, 0, 1, 0, 0]),
+        (0, [1, 1, 2, 10, 25]),
+        (9, [1, 1, 3, 10, 25]),
+        (10, [2, 1, 4, 20, 25]),
+        (10, [2, 1, 5, 20, 25]),
+        (47, [3, 2, 6, 50, 50]),
+        (50, [4, 3, 7, 60, 75]),
+        (i64::MAX, [5, 4, 8, i64::MAX, i64::MAX]),
+    ];
+    for mut engine in engines {
+        let mut image = program.layout.initial_image();
+        for (now, expected) in rounds {
+            engine.scan(&mut image, now);
+            let found: Vec<i64> =
+                program.layout.slots().iter().map(|slot| slot.read(&image).bits().cast_signed()).collect();
+            assert_eq!(found, expected, "at {now}");
+        }
+    }
+}
+
+/// A program that copies an array of `count` elements to the one behind it while its first slot is TRUE, and its type.
+fn copying(ty: Elementary, count: u32) -> Program {
+    let mut layout = LayoutBuilder::new();
+    let mut slot = |name: String, ty| {
+        let (area, initial) = (Area::Memory, Value::default_of(ty));
+        layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+    };
+    let condition = slot("condition".into(), Elementary::Bool);
+    let [from, to] =
+        ["from", "to"].map(|name| (0..count).map(|at| slot(format!("{name}[{at}]"), ty)).collect::<Vec<_>>());
+    slot("behind".into(), ty);
+    let [from, to] = [from, to].map(|slots| layout.array(slots[0], count));
+    let mut logic = Builder::new("copying", layout.finish(None).expect("a small image"));
+    let condition = logic.load(condition);
+    logic.copy_array(to, from, Some(condition));
+    logic.end_section(Origin { label: "r".into(), line: 1 });
+    logic.finish()
+}
+
+#[test]
+fn a_copy_moves_all_of_an_array_or_nothing_whatever_its_size() {
+    for ty in [Elementary::Bool, Elementary::Int, Elementary::Real, Elementary::Time] {
+        for bytes in [8, 16, 24, 32, 40, 56, 120, 1016, 1024, 1032, 4000] {
+            let count = bytes / ty.size() + u32::from(ty == Elementary::Bool);
+            let program = copying(ty, count);
+            let mut engines: [Box<dyn Scan>; 4] = [
+                Box::new(Textbook::new(&program)),
+                Box::new(Interpreter::new(&program)),
+                Box::new(compile(&program)),
+                Box::new(compile_as_for_riscv64(&program)),
+            ];
+            for copies in [false, true] {
+                let mut image = random::image(&program.layout, u64::from(bytes));
+                let slots = program.layout.slots();
+                slots[0].write(&mut image, Value::bool(copies));
+                let mut expected = image.clone();
+                for element in 1..=count as usize {
+                    if copies {
+                        slots[element + count as usize].write(&mut expected, slots[element].read(&image));
+                    }
+                }
+                for engine in &mut engines {
+                    let mut actual = image.clone();
+                    engine.scan(&mut actual, 0);
+                    assert_eq!(actual, expected, "{ty}, {count} elements, {copies}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn a_copy_is_two_moves_for_16_bytes_or_a_call() {
+    let target = host_isa().expect("a host with a back end").triple().clone();
+    let lines = |count| {
+        let jit = compile(&copying(Elementary::Int, count));
+        let chunk = &jit.chunks()[0];
+        disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).expect("a decoder for the host")
+    };
+    let short = lines(100);
+    let (moves, rest): (Vec<_>, Vec<_>) = short.iter().partition(|line| line.text.contains("xmm"));
+    assert_eq!(moves.len(), 24, "{short:#?}");
+    assert!(rest.len() < 20 && !short.iter().any(|line| line.jumps), "{short:#?}");
+    let long = lines(1000);
+    assert!(long.len() < 30 && long.iter().filter(|line| line.calls).count() == 1, "{long:#?}");
 }
 
 /// Indices at which something could go wrong: the ends of an array, of its bytes, and of all integers.

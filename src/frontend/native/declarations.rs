@@ -1,6 +1,6 @@
 //! Declarations: `var runs, faults : INT at %MW4 := 5 retain`.
 
-use super::parser::Parser;
+use super::parser::{Parser, Place};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::frontend::text::Parse;
 use crate::frontend::text::token::Kind;
@@ -20,13 +20,14 @@ impl Parser<'_> {
     /// A declaration of the current unit.
     pub(super) fn declaration(&mut self, class: VariableClass) -> Parse<()> {
         let start = self.token.span;
-        if !self.unit(start).rungs.is_empty() {
+        self.come_to(Place::Units, start);
+        if !self.unit().rungs.is_empty() {
             let problem = Diagnostic::new(Code::UnexpectedToken, start, "a declaration stands behind a rung");
             self.report(problem.hint("declarations stand before the first rung"));
         }
         self.advance();
         let variables = self.variables(class, start)?;
-        self.unit(start).variables.extend(variables);
+        self.unit().variables.extend(variables);
         Ok(())
     }
 

@@ -109,11 +109,10 @@ impl<'a> Parser<'a> {
     }
 
     /// The unit that declarations and rungs belong to. A file that starts without the header of a unit is one program.
-    pub(super) fn unit(&mut self, start: Span) -> &mut Unit {
+    pub(super) fn unit(&mut self) -> &mut Unit {
         if self.program.units.is_empty() {
             self.start_unit_without_header();
         }
-        self.come_to(Place::Units, start);
         let last = self.program.units.len() - 1;
         &mut self.program.units[last]
     }

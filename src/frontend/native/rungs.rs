@@ -1,6 +1,6 @@
 //! Rungs, circuits and branches: `rung r10 "title"`, `[ a | b ]`, `>node> a >other>`.
 
-use super::parser::Parser;
+use super::parser::{Parser, Place};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::frontend::text::token::Kind;
 use crate::frontend::text::{Parse, literals};
@@ -11,6 +11,7 @@ impl Parser<'_> {
     pub(super) fn rung(&mut self) -> Parse<()> {
         let first = self.token.span;
         let start = first.start;
+        self.come_to(Place::Units, first);
         self.anchor(start);
         self.advance();
         let enabled = !self.at_word("off") || self.token.first_on_line;
@@ -41,7 +42,7 @@ impl Parser<'_> {
         }
         self.item_end("an element, a `|` or another rung")?;
         let rung = Rung { name, title, enabled, circuit, span: self.since(start) };
-        self.unit(first).rungs.push(rung);
+        self.unit().rungs.push(rung);
         Ok(())
     }
 

@@ -12,7 +12,8 @@ use crate::source::Span;
 impl Parser<'_> {
     /// `type colour : (red, green)`
     pub(super) fn type_item(&mut self) -> Parse<()> {
-        self.come_to(Place::Types, self.token.span);
+        let start = self.token.span;
+        self.come_to(Place::Types, start);
         self.advance();
         let declaration = self.type_declaration()?;
         self.item_end("another declaration or a rung")?;
@@ -90,7 +91,10 @@ impl Parser<'_> {
         }
         self.advance();
         let mut settings = Vec::new();
-        while self.token.kind != Kind::RightParenthesis {
+        while settings.is_empty() || self.take(Kind::Comma) {
+            if settings.is_empty() && self.token.kind == Kind::RightParenthesis {
+                break;
+            }
             let name = self.name(expected)?;
             if !self.take(Kind::Assign) {
                 let problem = self.unexpected("`:=`");
@@ -98,9 +102,6 @@ impl Parser<'_> {
             }
             let value = self.setting()?;
             settings.push(Setting { name, value });
-            if !self.take(Kind::Comma) {
-                break;
-            }
         }
         self.close(Kind::RightParenthesis, open, "settings are parted by commas")?;
         Ok(settings)
@@ -165,6 +166,13 @@ impl Parser<'_> {
     }
 
     fn start_unit(&mut self, kind: UnitKind, name: Name, start: Span) -> Parse<()> {
+        if let [first] = self.program.units.as_slice()
+            && first.name.span == Span::default()
+        {
+            let message = "what stands before this belongs to a program without a name";
+            let problem = Diagnostic::new(Code::UnexpectedToken, start, message);
+            self.report(problem.hint("where there are several units, each starts with its name: program main"));
+        }
         self.come_to(Place::Units, start);
         let span = self.since(start.start);
         self.program.units.push(Unit { kind, name, variables: Vec::new(), rungs: Vec::new(), span });

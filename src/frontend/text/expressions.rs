@@ -374,7 +374,10 @@ impl Reader<'_> {
         }
         let mut items = Vec::new();
         let mut highest = 0;
-        while self.token.kind != Kind::RightBracket {
+        while items.is_empty() || self.take(Kind::Comma) {
+            if items.is_empty() && self.token.kind == Kind::RightBracket {
+                break;
+            }
             let first = self.initial_tree()?;
             highest = highest.max(first.height);
             let repeated = self.token.kind == Kind::LeftParenthesis;
@@ -385,9 +388,6 @@ impl Reader<'_> {
             } else {
                 ArrayItem { repeat: None, value: Some(first.expression) }
             });
-            if !self.take(Kind::Comma) {
-                break;
-            }
         }
         self.close(Kind::RightBracket, open, "values are parted by commas")?;
         self.leave();

@@ -173,10 +173,6 @@ impl Reader<'_> {
                     let leave = keyword == Keyword::Return;
                     Start::Statement(if leave { StatementKind::Return } else { StatementKind::Exit })
                 }
-                Keyword::Not => {
-                    let function = self.function_word();
-                    self.call_statement(Reference::of_name(function))?
-                }
                 _ => self.simple_statement()?,
             }));
         }
@@ -219,19 +215,23 @@ impl Reader<'_> {
             }
             _ => {
                 let value = self.tree()?;
-                self.value_or_label(value)
+                self.statement_from_value(value)
             }
         }
     }
 
-    /// An expression where a statement could stand: it is not assigned to.
-    fn value_or_label(&mut self, value: Tree) -> Parse<Start> {
+    /// What an expression starts: an assignment, or nothing more.
+    fn statement_from_value(&mut self, value: Tree) -> Parse<Start> {
         if self.token.kind != Kind::Assign {
             return Ok(Start::Expression(value));
         }
-        let message = "only a variable can be assigned to";
-        let problem = Diagnostic::new(Code::UnexpectedToken, value.expression.span, message);
-        self.give_up(problem.hint("to compare, write ="))
+        let ExpressionKind::Read(target) = value.expression.kind else {
+            let message = "only a variable can be assigned to";
+            let problem = Diagnostic::new(Code::UnexpectedToken, value.expression.span, message);
+            return self.give_up(problem.hint("to compare, write ="));
+        };
+        self.advance();
+        Ok(Start::Statement(self.assignment(target)?))
     }
 
     /// The name of a function that is a keyword too.
@@ -243,17 +243,11 @@ impl Reader<'_> {
     }
 
     fn statement_from(&mut self, path: Path) -> Parse<Start> {
-        match self.token.kind {
-            Kind::Assign => {
-                self.advance();
-                Ok(Start::Statement(self.assignment(path.reference)?))
-            }
-            Kind::LeftParenthesis => self.call_statement(path.reference),
-            _ => {
-                let value = self.tree_from(path.read())?;
-                self.value_or_label(value)
-            }
+        if self.token.kind == Kind::LeftParenthesis {
+            return self.call_statement(path.reference);
         }
+        let value = self.tree_from(path.read())?;
+        self.statement_from_value(value)
     }
 
     /// An assignment, behind its `:=`. In structured text a call there can have EN and outputs of its own; then it is a call that
@@ -318,7 +312,7 @@ impl Reader<'_> {
         {
             let first = self.value_of_call(function, arguments, start);
             let value = self.tree_from(first)?;
-            return self.value_or_label(value);
+            return self.statement_from_value(value);
         }
         let call = BlockCall { instance, type_name: None, arguments: arguments.list, power_output: None };
         Ok(Start::Statement(StatementKind::Call(call)))
@@ -330,7 +324,10 @@ impl Reader<'_> {
         if !self.enter()? {
             return Ok(arguments);
         }
-        while self.token.kind != Kind::RightParenthesis {
+        while arguments.list.is_empty() || self.take(Kind::Comma) {
+            if arguments.list.is_empty() && self.token.kind == Kind::RightParenthesis {
+                break;
+            }
             let start = self.token.span.start;
             let tree = self.tree()?;
             let named = matches!(self.token.kind, Kind::Assign | Kind::Arrow);
@@ -355,9 +352,6 @@ impl Reader<'_> {
                 }
             };
             arguments.list.push(Argument { pin, wire, span: self.since(start) });
-            if !self.take(Kind::Comma) {
-                break;
-            }
         }
         self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
         self.leave();

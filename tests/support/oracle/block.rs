@@ -1,18 +1,22 @@
 //! The standard function blocks, each as the little machine that the semantics describe.
 
 use rung::elementary::{Elementary, Value};
-use rung::ladder::library::StandardBlock;
+use rung::ladder::library::{Pin, StandardBlock};
 
 use super::analog::{Derivative, Pid, PidInputs, Ramp, hysteresis, integral};
+use super::register_machine::{Direction, Machine};
+use super::storage::Register;
 
 /// One instance: its pins and what it remembers.
 #[derive(Clone, Debug)]
 pub(crate) struct Instance {
     block: StandardBlock,
-    /// What its inputs were given last; at first 0.
-    pub inputs: Vec<Value>,
+    /// What its inputs were given last; at first the pin's default.
+    pub inputs: Vec<Register>,
     /// What its outputs hold; at first 0.
-    pub outputs: Vec<Value>,
+    pub outputs: Vec<Register>,
+    /// For each input what it stands for in this call, if it is a reference: the variable, or the element and all behind it.
+    pub references: Vec<Vec<Register>>,
     state: State,
     start: i64,
     /// For a timer last scan's IN; for others the memory of the rising edge of each BOOL input.
@@ -20,6 +24,7 @@ pub(crate) struct Instance {
     derivative: Derivative,
     pid: Pid,
     ramp: Ramp,
+    pub(super) machine: Machine,
 }
 
 /// Where a timer is.
@@ -33,17 +38,19 @@ enum State {
 impl Instance {
     /// An instance that never ran.
     pub(crate) fn new(block: StandardBlock) -> Self {
-        let zeros = |pins: &[rung::ladder::library::Pin]| pins.iter().map(|pin| Value::default_of(pin.ty)).collect();
+        let registers = |pins: &[Pin]| pins.iter().map(|pin| Register::new(pin.initial_value())).collect();
         Self {
             block,
-            inputs: zeros(block.inputs()),
-            outputs: zeros(block.outputs()),
+            inputs: registers(block.inputs()),
+            outputs: registers(block.outputs()),
+            references: vec![Vec::new(); block.inputs().len()],
             state: State::Idle,
             start: 0,
             previous: [false; 2],
             derivative: Derivative::default(),
             pid: Pid::default(),
             ramp: Ramp::default(),
+            machine: Machine::default(),
         }
     }
 
@@ -72,6 +79,15 @@ impl Instance {
             | StandardBlock::CtudLint
             | StandardBlock::CtudUdint
             | StandardBlock::CtudUlint => self.count_up_and_down(),
+            StandardBlock::Tt => self.machine_timer(100_000_000, now),
+            StandardBlock::Ts => self.machine_timer(1_000_000_000, now),
+            StandardBlock::Uc => self.machine_up_counter(),
+            StandardBlock::Dc => self.machine_down_counter(),
+            StandardBlock::Dr => self.machine_drum(),
+            StandardBlock::Shiftl => self.machine_shift(Direction::Left),
+            StandardBlock::Shiftr => self.machine_shift(Direction::Right),
+            StandardBlock::Bs => self.machine_bit(true),
+            StandardBlock::Bc => self.machine_bit(false),
             StandardBlock::RTrig => {
                 let rises = self.rises(0, 0);
                 self.put_bool(0, rises);
@@ -83,12 +99,12 @@ impl Instance {
                 self.previous[0] = open;
             }
             StandardBlock::Sr => {
-                let q1 = self.bool(0) || (!self.bool(1) && self.outputs[0].is_true());
+                let q1 = self.bool(0) || (!self.bool(1) && self.outputs[0].get().is_true());
                 self.put_bool(0, q1);
             }
             StandardBlock::Integral => {
                 self.put_bool(0, !self.bool(1));
-                let held = real(self.outputs[1]);
+                let held = real(self.outputs[1].get());
                 let xout = integral(held, self.bool(0), self.bool(1), self.real(2), self.real(3), self.time(4));
                 self.put_real(1, xout);
             }
@@ -110,15 +126,15 @@ impl Instance {
                 self.put_real(1, xout);
             }
             StandardBlock::Hysteresis => {
-                let q = hysteresis(self.outputs[0].is_true(), self.real(0), self.real(1), self.real(2));
+                let q = hysteresis(self.outputs[0].get().is_true(), self.real(0), self.real(1), self.real(2));
                 self.put_bool(0, q);
             }
             StandardBlock::Sema => {
-                let taken = self.bool(0) || (self.outputs[0].is_true() && !self.bool(1));
+                let taken = self.bool(0) || (self.outputs[0].get().is_true() && !self.bool(1));
                 self.put_bool(0, taken);
             }
             StandardBlock::Rs => {
-                let q1 = !self.bool(1) && (self.bool(0) || self.outputs[0].is_true());
+                let q1 = !self.bool(1) && (self.bool(0) || self.outputs[0].get().is_true());
                 self.put_bool(0, q1);
             }
         }
@@ -256,49 +272,62 @@ impl Instance {
     }
 
     /// R_TRIG on an input: Q := CLK AND NOT M; M := CLK.
-    fn rises(&mut self, input: usize, memory: usize) -> bool {
+    pub(super) fn rises(&mut self, input: usize, memory: usize) -> bool {
         let clock = self.bool(input);
         let rises = clock && !self.previous[memory];
         self.previous[memory] = clock;
         rises
     }
 
-    fn bool(&self, input: usize) -> bool {
-        self.inputs[input].is_true()
+    /// The register at a place from the one on that a reference stands for; one that is beyond the array reads 0.
+    pub(super) fn register(&self, input: usize, place: usize) -> u16 {
+        let bits = self.references[input].get(place).map_or(0, |register| register.get().bits());
+        u16::try_from(bits).expect("a register is a WORD")
     }
 
-    fn integer(&self, input: usize) -> i128 {
-        self.inputs[input].as_integer().expect("the input is no REAL")
+    /// Writes that register; what is beyond the array is lost.
+    pub(super) fn put_register(&self, input: usize, place: usize, value: u16) {
+        if let Some(register) = self.references[input].get(place) {
+            register.set(Value::from_bits(Elementary::Word, value.into()));
+        }
     }
 
-    fn time(&self, input: usize) -> i64 {
+    pub(super) fn bool(&self, input: usize) -> bool {
+        self.inputs[input].get().is_true()
+    }
+
+    pub(super) fn integer(&self, input: usize) -> i128 {
+        self.inputs[input].get().as_integer().expect("the input is no REAL")
+    }
+
+    pub(super) fn time(&self, input: usize) -> i64 {
         i64::try_from(self.integer(input)).expect("a TIME has 64 bits")
     }
 
-    fn real(&self, input: usize) -> f32 {
-        real(self.inputs[input])
+    pub(super) fn real(&self, input: usize) -> f32 {
+        real(self.inputs[input].get())
     }
 
-    fn output(&self, output: usize) -> i128 {
-        self.outputs[output].as_integer().expect("the output is no REAL")
+    pub(super) fn output(&self, output: usize) -> i128 {
+        self.outputs[output].get().as_integer().expect("the output is no REAL")
     }
 
-    fn put_bool(&mut self, output: usize, value: bool) {
-        self.outputs[output] = Value::bool(value);
+    pub(super) fn put_bool(&self, output: usize, value: bool) {
+        self.outputs[output].set(Value::bool(value));
     }
 
-    fn put_real(&mut self, output: usize, value: f32) {
-        self.outputs[output] = Value::from_bits(Elementary::Real, u64::from(value.to_bits()));
+    pub(super) fn put_real(&self, output: usize, value: f32) {
+        self.outputs[output].set(Value::from_bits(Elementary::Real, u64::from(value.to_bits())));
     }
 
     /// A timer's ET.
-    fn put_elapsed(&mut self, nanoseconds: i64) {
-        self.outputs[1] = Value::time(nanoseconds);
+    fn put_elapsed(&self, nanoseconds: i64) {
+        self.outputs[1].set(Value::time(nanoseconds));
     }
 
-    fn put_count(&mut self, output: usize, count: i128) {
-        let ty = self.outputs[output].ty();
-        self.outputs[output] = Value::integer(ty, count).expect("a count stays between 0 and PV");
+    pub(super) fn put_count(&self, output: usize, count: i128) {
+        let ty = self.outputs[output].get().ty();
+        self.outputs[output].set(Value::integer(ty, count).expect("a count stays between 0 and PV"));
     }
 }
 

@@ -1,4 +1,4 @@
-//! Expressions: integers wrap around, what is divided by zero is 0, REAL and LREAL follow IEEE 754 with one NaN.
+//! Expressions: every operand is computed, from left to right; integers wrap around, what is divided by zero is 0, REAL and LREAL follow IEEE 754 with one NaN.
 
 use std::cmp::Ordering;
 
@@ -6,20 +6,34 @@ use rung::check::{Expression, ExpressionKind};
 use rung::elementary::{Elementary, Value};
 use rung::ladder::{BinaryOperator, UnaryOperator};
 
+use super::place::Attempt;
+use super::storage::Frame;
 use super::{Oracle, function};
 
 impl Oracle<'_> {
-    /// The value of an expression now. It changes nothing.
-    pub(super) fn value(&self, expression: &Expression) -> Value {
+    /// The value of an expression now. What is not executed changes nothing.
+    pub(super) fn value(&mut self, frame: &Frame, expression: &Expression, attempt: &mut Attempt) -> Value {
         let value = match &expression.kind {
             ExpressionKind::Constant(value) => *value,
-            ExpressionKind::Read(place) => self.read(*place),
-            ExpressionKind::Unary(operator, operand) => unary(*operator, self.value(operand)),
-            ExpressionKind::Binary(operator, left, right) => binary(*operator, self.value(left), self.value(right)),
-            ExpressionKind::Widen(operand) => widen(expression.ty, self.value(operand)),
+            ExpressionKind::Read(place) => self.read(frame, place, attempt),
+            ExpressionKind::Unary(operator, operand) => unary(*operator, self.value(frame, operand, attempt)),
+            ExpressionKind::Binary(operator, left, right) => {
+                let left = self.value(frame, left, attempt);
+                binary(*operator, left, self.value(frame, right, attempt))
+            }
+            ExpressionKind::Widen(operand) => widen(expression.ty, self.value(frame, operand, attempt)),
             ExpressionKind::Call { function, arguments } => {
-                let arguments: Vec<Value> = arguments.iter().map(|argument| self.value(argument)).collect();
+                let arguments: Vec<Value> =
+                    arguments.iter().map(|argument| self.value(frame, argument, attempt)).collect();
                 function::call(*function, expression.ty, &arguments)
+            }
+            ExpressionKind::UserCall { unit, arguments, references } => {
+                let value = |argument: &Option<Expression>| {
+                    argument.as_ref().map(|argument| self.value(frame, argument, attempt))
+                };
+                let inputs: Vec<Option<Value>> = arguments.iter().map(value).collect();
+                let references = references.iter().map(|place| self.locate(frame, place, attempt)).collect();
+                self.result(*unit, &inputs, references, attempt.executed)
             }
         };
         assert_eq!(value.ty(), expression.ty, "checking gave {expression:?} a type that it does not have");
@@ -27,7 +41,7 @@ impl Oracle<'_> {
     }
 }
 
-fn unary(operator: UnaryOperator, operand: Value) -> Value {
+pub(super) fn unary(operator: UnaryOperator, operand: Value) -> Value {
     let ty = operand.ty();
     match (operator, ty) {
         (UnaryOperator::Not, _) => Value::from_bits(ty, !operand.bits()),
@@ -39,7 +53,7 @@ fn unary(operator: UnaryOperator, operand: Value) -> Value {
     }
 }
 
-fn binary(operator: BinaryOperator, left: Value, right: Value) -> Value {
+pub(super) fn binary(operator: BinaryOperator, left: Value, right: Value) -> Value {
     use BinaryOperator as B;
     assert_eq!(left.ty(), right.ty(), "checking gives both operands one type");
     let ty = left.ty();

@@ -2,8 +2,9 @@
 
 use rung::elementary::{Elementary, Value};
 use rung::ladder::functions::{Function, StandardFunction};
+use rung::ladder::{BinaryOperator, UnaryOperator};
 
-use super::expression::{double, number, single, wrapped};
+use super::expression::{binary, double, number, single, unary, wrapped};
 
 const NANOSECONDS: i128 = 1_000_000_000;
 
@@ -72,7 +73,14 @@ fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> 
             divisor => wrapped(ty, number(first) / divisor),
         },
         F::DivideTime => nearest_in_range(ty, (real(first) / real(arguments[1])).round_ties_even()),
-        _ => panic!("checking turns {} into an operator", function.name()),
+        // In an expression checking turns these into operators, which they are; in a box they stay what they are.
+        F::Subtract | F::SubtractTime => binary(BinaryOperator::Subtract, first, arguments[1]),
+        F::AddTime => binary(BinaryOperator::Add, first, arguments[1]),
+        F::Divide => binary(BinaryOperator::Divide, first, arguments[1]),
+        F::Modulo => binary(BinaryOperator::Modulo, first, arguments[1]),
+        F::NotEqual => binary(BinaryOperator::NotEqual, first, arguments[1]),
+        F::Not => unary(UnaryOperator::Not, first),
+        F::Move => first,
     }
 }
 

@@ -1,17 +1,22 @@
 //! Random networks: series, parallel, nodes, and calls with all that can be wired to them.
 
 use rung::elementary::Elementary;
-use rung::ladder::library::StandardBlock;
+use rung::ladder::library::{Pin, StandardBlock, Takes};
 use rung::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, ExpressionKind, Reference, Wire,
+    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
+    Reference, Wire,
 };
 
+use super::declaration::{REGISTER_COUNT, REGISTERS};
 use super::expression::boolean;
 use super::{Generator, Instance, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 /// How deep parallels and circuits at pins nest.
 const DEPTH: usize = 3;
+
+/// The most registers in a chain.
+const LONGEST_CHAIN: usize = 4;
 
 impl Generator {
     /// One to three elements.
@@ -158,7 +163,7 @@ impl Generator {
             block.outputs().iter().filter(|pin| pin.ty == Elementary::Bool).map(|pin| pin.name).collect();
         let chosen = !bools.is_empty() && self.dice.percent(if bools.len() > 1 { 60 } else { 15 });
         drawing::element(ElementKind::Block(BlockCall {
-            instance: drawing::name(&instance.name),
+            instance: Reference::of_name(drawing::name(&instance.name)),
             type_name: (!instance.declared || self.dice.percent(10)).then(|| drawing::name(block.name())),
             arguments,
             power_output: chosen.then(|| drawing::name(self.dice.pick::<&str>(&bools))),
@@ -172,17 +177,38 @@ impl Generator {
         let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
         for (index, pin) in block.inputs().iter().enumerate() {
             let wire = match (index, pin.ty) {
+                _ if pin.takes == Takes::Reference => Wire::Value(self.register()),
+                _ if pin.takes == Takes::Constant => Wire::Value(self.constant(pin)),
                 _ if Some(index) == power && !enable => continue,
                 _ if Some(index) == power => self.bool_wire(depth),
                 (_, Elementary::Bool) if self.dice.percent(30) => continue,
                 (_, Elementary::Bool) => self.bool_wire(depth),
                 _ if self.dice.percent(8) => continue,
+                (_, ty) if pin.range.is_some() => {
+                    // A constant beyond the range is an error, also one that is computed.
+                    let variable = self.dice.percent(30).then(|| self.place(ty, Purpose::ReadVariable)).flatten();
+                    Wire::Value(variable.map_or_else(
+                        || self.constant(pin),
+                        |reference| drawing::expression(ExpressionKind::Read(reference)),
+                    ))
+                }
                 (_, ty) => Wire::Value(self.preset(ty)),
             };
             let name = if self.dice.percent(20) { pin.name.to_lowercase() } else { pin.name.to_owned() };
             arguments.push(drawing::argument(&name, wire));
         }
         arguments
+    }
+
+    /// One of the registers that every program has, such that a chain of some more may follow.
+    fn register(&mut self) -> Expression {
+        drawing::read(&format!("{REGISTERS}[{}]", self.dice.below(REGISTER_COUNT as usize - LONGEST_CHAIN)))
+    }
+
+    fn constant(&mut self, pin: &Pin) -> Expression {
+        let (least, greatest) = pin.range.expect("a pin that takes a constant says which");
+        let numbers: Vec<i64> = (least..=greatest).take(LONGEST_CHAIN).collect();
+        drawing::integer((*self.dice.pick(&numbers)).into())
     }
 
     fn bool_wire(&mut self, depth: usize) -> Wire {

@@ -2,10 +2,15 @@
 
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
-use rung::ladder::{Address, Area, Root, Variable, VariableClass, Width};
+use rung::ladder::{Address, Area, Root, TypeReference, Variable, VariableClass, Width};
 
 use super::{Entry, Generator, Instance};
 use crate::support::drawing;
+
+/// Registers that blocks use in chains.
+pub(super) const REGISTERS: &str = "registers";
+/// How many there are.
+pub(super) const REGISTER_COUNT: u32 = 8;
 
 impl Generator {
     pub(super) fn declare(&mut self) {
@@ -26,6 +31,8 @@ impl Generator {
                 }
             }
         }
+        let registers = drawing::array(Memory, REGISTERS, REGISTER_COUNT, Elementary::Word);
+        self.program.units[0].variables.push(registers);
         if self.dice.percent(8) {
             // Names that need back quotes, or look like something else.
             let odd = *self.dice.pick(&["Füllstand 1", "rung", "S", "T", "x.y", "AND", "1st"]);
@@ -40,11 +47,11 @@ impl Generator {
             let name = format!("{}_{number}", block.name().to_lowercase());
             if declared {
                 let variable = Variable {
-                    type_name: Some(drawing::name(block.name())),
+                    ty: Some(TypeReference::of_name(drawing::name(block.name()))),
                     retain: self.dice.percent(30),
                     ..drawing::variable(Memory, &name, Elementary::Bool)
                 };
-                self.program.variables.push(variable);
+                self.program.units[0].variables.push(variable);
             }
             self.instances.push(Instance { name, block, declared });
         }
@@ -55,12 +62,13 @@ impl Generator {
         let given = if class == VariableClass::Constant { 100 } else { 40 };
         let initial = self.dice.percent(given).then(|| self.initial_value(ty));
         let variable = Variable {
-            type_name: (ty != Elementary::Bool || self.dice.percent(20)).then(|| drawing::name(ty.name())),
+            ty: (ty != Elementary::Bool || self.dice.percent(20))
+                .then(|| TypeReference::of_name(drawing::name(ty.name()))),
             initial,
             retain: matches!(class, VariableClass::Output | VariableClass::Memory) && self.dice.percent(20),
             ..drawing::variable(class, name, ty)
         };
-        self.program.variables.push(variable);
+        self.program.units[0].variables.push(variable);
         self.scope.push(Entry { root: Root::Name(drawing::name(name)), ty, class });
     }
 
@@ -76,7 +84,7 @@ impl Generator {
             let address = Address { area, width, numbers: numbers.to_vec(), span: drawing::NOWHERE };
             for (name, ty) in names {
                 let variable = Variable { address: Some(address.clone()), ..drawing::variable(class, name, *ty) };
-                self.program.variables.push(variable);
+                self.program.units[0].variables.push(variable);
                 self.scope.push(Entry { root: Root::Name(drawing::name(name)), ty: *ty, class });
             }
             let undeclared = match width {

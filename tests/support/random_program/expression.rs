@@ -1,6 +1,7 @@
 //! Random expressions that have the type they should.
 
 use rung::elementary::Elementary;
+use rung::ladder::library::Takes;
 use rung::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
 
 use super::{Generator, Purpose};
@@ -140,7 +141,8 @@ impl Generator {
         let instance = self.dice.pick(&self.instances).clone();
         let outputs = instance.block.outputs();
         let pins = if self.dice.percent(10) { instance.block.inputs() } else { outputs };
-        let fitting: Vec<&str> = pins.iter().filter(|pin| pin.ty == ty).map(|pin| pin.name).collect();
+        let fitting: Vec<&str> =
+            pins.iter().filter(|pin| pin.ty == ty && pin.takes == Takes::Value).map(|pin| pin.name).collect();
         let pin = *fitting.get(self.dice.below(fitting.len()))?;
         Some(Reference {
             root: Root::Name(drawing::name(&instance.name)),

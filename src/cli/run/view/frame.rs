@@ -5,6 +5,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::super::points::{Block, Point, Points, shown};
 use super::super::time::{exact, rounded};
+use crate::cli::tasks;
 use crate::elementary::{Elementary, Value};
 
 /// What is drawn.
@@ -73,7 +74,7 @@ fn head(state: &State<'_>) -> Vec<String> {
         [all.p50, all.p99, all.max].map(|value| format!("{:>9}", rounded(value))).join("")
     };
     let statistics = state.statistics;
-    vec![
+    let mut lines = vec![
         format!(
             "{}   engine {}   cycle {}   {}.{} s",
             state.title,
@@ -85,7 +86,11 @@ fn head(state: &State<'_>) -> Vec<String> {
         format!("               p50      p99      max    {:>8} cycles", statistics.cycles()),
         format!("scan     {}    {:>8} overruns", quantiles(&statistics.scan), statistics.overruns()),
         format!("lateness {}    {:>8} skipped", quantiles(&statistics.lateness), statistics.skipped()),
-    ]
+    ];
+    if state.points.is_faulty(state.image) {
+        lines.push(tasks::FAULT.to_owned());
+    }
+    lines
 }
 
 /// Items in columns below a heading; nothing where there are none.
@@ -206,13 +211,19 @@ mod tests {
             outputs: vec![point("pump", Elementary::Bool, 1, None)],
             variables: Vec::new(),
             blocks: vec![block],
+            fault: Some(point("#fault", Elementary::Bool, 4, None).slot),
         }
     }
 
     fn drawn(width: usize, height: usize) -> Vec<String> {
+        drawn_with(width, height, false)
+    }
+
+    fn drawn_with(width: usize, height: usize, fault: bool) -> Vec<String> {
         let (points, statistics) = (points(), Statistics::default());
         let mut image = vec![0; 24];
         image[1] = 1;
+        image[4] = u8::from(fault);
         point("delay.ET", Elementary::Time, 8, None).slot.write(&mut image, Value::time(1_500_000_000));
         point("preset", Elementary::Time, 16, None).slot.write(&mut image, Value::time(6_000_000_000));
         let state = State {
@@ -248,6 +259,14 @@ blocks
      delay            TON    ● Q         ███░░░░░░░░░  1.5 s of 6.0 s
 a key in brackets toggles or selects, + and - change a selected number";
         assert_eq!(drawn(70, 30).join("\n"), expected);
+    }
+
+    #[test]
+    fn an_index_out_of_range_is_told_below_the_statistics() {
+        let (right, faulty) = (drawn(120, 30), drawn_with(120, 30, true));
+        assert!(!right.contains(&tasks::FAULT.to_owned()));
+        assert_eq!((faulty[..4].to_vec(), faulty[4].as_str()), (right[..4].to_vec(), tasks::FAULT));
+        assert_eq!(faulty[5..], right[4..]);
     }
 
     #[test]

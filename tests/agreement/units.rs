@@ -1,0 +1,306 @@
+//! Function blocks and functions of the program's own: what each instance keeps, what stands for the caller's variables.
+
+use crate::support::script::follows;
+
+#[test]
+fn every_instance_has_its_own_variables_timers_and_edges() {
+    follows(
+        "function_block counts
+input run
+output n : INT
+output late
+var t : TON
+rung
+  ^run {n := n + 1}
+rung
+  run t(PT := T#10ms) (late)
+program p
+input a, b
+var one, two : counts
+rung
+  a one() 
+rung
+  b two()",
+        "ms a b | one.n two.n one.late two.late
+         0  1 0 | 1     0     0        0
+         5  1 1 | 1     1     0        0
+         10 0 1 | 1     1     0        0
+         15 1 1 | 2     1     0        1
+         25 1 0 | 2     1     1        0
+         26 0 1 | 2     2     0        0",
+    );
+}
+
+#[test]
+fn an_input_that_is_not_wired_keeps_its_value() {
+    follows(
+        "function_block adds
+input go
+input step : INT := 5
+output sum : INT
+rung
+  go {sum := sum + step}
+program p
+input a, b
+output x : INT
+var fb : adds
+rung
+  {IF b THEN fb(go := FALSE, step := 2); END_IF;}
+rung
+  a fb(sum => x)
+rung
+  {fb.step = 5} {fb.step := 3}",
+        "ms a b | fb.sum x
+         0  1 0 | 5      5
+         1  1 0 | 8      8
+         2  0 1 | 8      8
+         3  1 0 | 10     10",
+    );
+}
+
+#[test]
+fn blocks_lie_in_blocks_and_in_arrays() {
+    follows(
+        "function_block inner
+input x
+output q
+rung
+  ^x (q)
+function_block outer
+input x
+output n : INT
+var c : array [0..1] of inner
+rung
+  x c[0]() {n := n + 1}
+rung
+  /x c[1]() {n := n + 10}
+program p
+input a, b
+var fb : array [1..2] of outer
+rung
+  a fb[1]()
+rung
+  b fb[2]()",
+        "ms a b | fb[1].n fb[2].n
+         0  0 1 | 10      1
+         1  1 1 | 11      1
+         2  1 0 | 11      11
+         3  0 1 | 21      12",
+    );
+}
+
+#[test]
+fn a_reference_is_the_callers_variable_itself() {
+    follows(
+        "function_block moves
+input go
+inout n : INT
+inout list : array [0..2] of INT
+output seen : INT
+rung
+  go {n := n + 1} {seen := n} {list[n] := seen}
+program p
+input a
+var x, y : INT
+var l : array [0..2] of INT
+var fb : moves
+rung
+  a fb(n := x, list := l)
+rung
+  {y := x}",
+        "ms a | x y fb.seen l[0] l[1] l[2] #fault
+         0  1 | 1 1 1       0    1    0    0
+         1  1 | 2 2 2       0    1    2    0
+         2  0 | 2 2 2       0    1    2    0
+         3  1 | 3 3 3       0    1    2    1",
+    );
+}
+
+#[test]
+fn the_index_of_a_reference_is_computed_once_at_the_call() {
+    follows(
+        "global i : INT
+function_block bumps
+input go
+inout n : INT
+rung
+  go {n := n + 1} {i := i + 1} {n := n + 10}
+program p
+input a
+output ok
+var l : array [0..2] of INT
+var fb : bumps
+rung
+  a fb(n := l[i]).ENO (ok)",
+        "ms a | i l[0] l[1] l[2] ok #fault
+         0  1 | 1 11   0    0    1  0
+         1  1 | 2 11   11   0    1  0
+         2  0 | 2 11   11   0    1  0
+         3  1 | 3 11   11   11   1  0
+         4  1 | 4 11   11   11   0  1",
+    );
+}
+
+#[test]
+fn two_references_may_be_one_variable() {
+    follows(
+        "function swap
+inout a, b : INT
+temp t : INT
+rung
+  {t := a; a := b; b := t;}
+program p
+input same
+var x : INT := 1
+var y : INT := 2
+rung
+  /same swap(a := x, b := y)
+rung
+  same swap(a := x, b := x)",
+        "ms same | x y
+         0  0    | 2 1
+         1  1    | 2 1
+         2  0    | 1 2",
+    );
+}
+
+#[test]
+fn a_function_starts_afresh_at_each_call() {
+    follows(
+        "function scale : INT
+input x : INT
+input factor : INT := 3
+output calls : INT
+var n : INT := 40
+rung
+  {n := n + 1; scale := x * factor; calls := n;}
+program p
+input a
+input v : INT
+output r, s, c : INT
+output ok
+rung
+  {r := scale(x := v) + scale(x := 2, factor := v)}
+rung
+  a scale(x := v, factor := 2, OUT => s, calls => c) (ok)",
+        "ms a v | r  s c  ok
+         0  0 4 | 20 0 0  0
+         1  1 5 | 25 10 41 1
+         2  0 6 | 30 10 41 0",
+    );
+}
+
+#[test]
+fn a_jump_or_return_stays_within_its_unit() {
+    follows(
+        "function_block skips
+input a, b
+output n : INT
+rung
+  a >> behind
+rung
+  {n := n + 1}
+rung behind
+  b >> return
+rung
+  {n := n + 10}
+program p
+input a, b
+var fb : skips
+var m : INT
+rung
+  TRUE fb(a := a, b := b) {m := m + 1}
+rung
+  {m := m + 10}",
+        "ms a b | fb.n m
+         0  0 0 | 11   11
+         1  1 0 | 21   22
+         2  0 1 | 22   33
+         3  1 1 | 22   44",
+    );
+}
+
+#[test]
+fn a_temporary_starts_afresh_at_each_run() {
+    follows(
+        "function_block sums
+input x : INT
+output s : INT
+temp t : INT := 100
+rung
+  {t := t + x; s := t;}
+program p
+input v : INT
+temp k : INT := 7
+output o : INT
+var fb : sums
+rung
+  {k := k + v; o := k;} fb(x := v)
+rung
+  fb(x := v + 1)",
+        "ms v | o fb.s
+         0  1 | 8 102
+         1  5 | 12 106",
+    );
+}
+
+#[test]
+fn a_block_that_is_not_enabled_keeps_everything() {
+    follows(
+        "function_block latch
+input set
+output q
+var n : INT
+rung
+  ^set {n := n + 1} 
+rung
+  {n > 1} (q)
+program p
+input a, e
+output x, right
+var fb : latch
+rung
+  a fb(EN := e, q => x) (right)",
+        "ms a e | fb.q x right
+         0  1 1 | 0    0 0
+         1  0 0 | 0    0 0
+         2  1 0 | 0    0 0
+         3  1 1 | 0    0 0
+         4  0 1 | 0    0 0
+         5  1 1 | 1    1 1
+         6  0 0 | 1    1 1",
+    );
+}
+
+#[test]
+fn a_block_that_is_jumped_over_keeps_everything() {
+    follows(
+        "function_block blinks
+input go
+output n : INT
+output q
+var t : TP
+rung
+  ^go {n := n + 1}
+rung
+  go t(PT := T#10ms) (q)
+program p
+input j, a
+output x
+var fb : blinks
+rung
+  j >> behind
+rung
+  a fb()
+rung behind
+  fb.q (x)",
+        "ms j a | fb.n fb.q x
+         0  0 1 | 1    1    1
+         5  1 0 | 1    1    1
+         9  1 1 | 1    1    1
+         15 0 1 | 1    0    0
+         16 0 0 | 1    0    0
+         17 1 1 | 1    0    0
+         18 0 1 | 2    1    1",
+    );
+}
