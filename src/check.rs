@@ -29,8 +29,10 @@ mod jump;
 mod model;
 mod network;
 mod place;
+mod register;
 mod report;
 mod scope;
+mod size;
 pub(crate) mod spelling;
 mod statement;
 mod type_table;
@@ -75,11 +77,13 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
         types: TypeTable::default(),
         units: Vec::new(),
         functions: unit::functions(program),
+        first_rungs: unit::first_rungs(program),
         scope: Scope::default(),
         registers: Resources::default(),
         direct: Direct::default(),
         too_deep: HashSet::new(),
         loops: 0,
+        turns: None,
         usage: Usage::default(),
         labels: Labels::default(),
     };
@@ -87,9 +91,11 @@ pub fn check(program: &Program) -> (Option<Checked>, Vec<Diagnostic>) {
     checker.check_overlaps();
     checker.check_register_count();
     let rungs: Vec<Vec<Rung>> = (0..program.units.len()).map(|unit| checker.check_unit(unit)).collect();
-    checker.check_calls_end();
+    checker.check_usage();
     let (tasks, programs) = checker.check_tasks();
+    checker.check_sizes(&programs);
     checker.check_unused();
+    checker.check_unused_units();
     let Checker { report, scope, types, units, .. } = checker;
     let (runs, diagnostics) = report.finish();
     let checked = runs.then(|| {
@@ -118,6 +124,8 @@ struct Checker<'p> {
     units: Vec<Signature>,
     /// The functions among them, by their names.
     functions: HashMap<String, UnitId>,
+    /// How many rungs stand before those of each unit.
+    first_rungs: Vec<usize>,
     scope: Scope,
     registers: Resources,
     direct: Direct,
@@ -125,6 +133,8 @@ struct Checker<'p> {
     too_deep: HashSet<(usize, usize)>,
     /// The FORs around what is being checked.
     loops: u32,
+    /// How often they repeat it; none where it does not run.
+    turns: Option<u64>,
     usage: Usage,
     labels: Labels,
 }

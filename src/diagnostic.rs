@@ -106,6 +106,7 @@ codes! {
     MisplacedJump = 511 Error "a jump where none can stand",
     NoMemoryHere = 512 Error "something that remembers, in a function",
     BadResource = 513 Error "a task, program instance or resource that cannot be",
+    MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",

@@ -1,8 +1,9 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
 use super::function_box::{Boxable, Boxed};
-use super::model::{Call, Callee, Circuit, Index, Input, Output, Place, Step, Type, UnitId, Wire};
+use super::model::{Call, Callee, Circuit, Input, Output, Place, Type, UnitId, Wire};
 use super::network::{Power, Walk};
+use super::register::is_constant;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
@@ -171,6 +172,11 @@ impl Checker<'_> {
             self.report.push(problem.hint("declare a function block instead, which has instances"));
             return None;
         }
+        if let Callee::Standard(block, _) = callee
+            && !self.check_registers_of(block, call, &inputs, &references)
+        {
+            return None;
+        }
         let call = Call { callee, enable, power_input, inputs, references, outputs, power_output };
         Some(Boxed::Call(Box::new(call)))
     }
@@ -183,11 +189,7 @@ impl Checker<'_> {
             })?;
         }
         let (place, ty) = self.place(&call.instance)?;
-        let computed = |step: &Step| match step {
-            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
-            _ => false,
-        };
-        if place.path.iter().any(computed) {
+        if !is_constant(&place) {
             let message = "an instance cannot be chosen while the program runs";
             let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
             self.report.push(problem.hint("its index must be a constant; write a call for each"));
@@ -430,8 +432,10 @@ impl Checker<'_> {
 
     pub(super) fn pin_circuit(&mut self, circuit: &ladder::Circuit, walk: &mut Walk) -> Circuit {
         let around = std::mem::replace(&mut walk.in_pin, true);
+        let loops = std::mem::take(&mut self.loops);
         let (checked, _) = self.circuit(circuit, Power::Maybe, walk);
         walk.in_pin = around;
+        self.loops = loops;
         checked
     }
 

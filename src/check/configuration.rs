@@ -1,9 +1,9 @@
 //! What runs when: tasks, program instances, and the size of the register machine.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
+use super::Checker;
 use super::model::{ProgramInstance, Task, TaskId, Type, UnitId};
-use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
 use crate::ladder::{self, Name, UnitKind, VariableClass};
@@ -107,10 +107,11 @@ impl Checker<'_> {
         let mut instances: Vec<(usize, ProgramInstance)> = Vec::new();
         let free = tasks.len();
         let mut unit_of = HashMap::new();
+        let instantiated: HashSet<String> = program.instances.iter().map(|instance| instance.program.key()).collect();
         for (index, unit) in (0..).zip(&program.units) {
             let UnitKind::Program { task } = &unit.kind else { continue };
             unit_of.entry(unit.name.key()).or_insert(UnitId(index));
-            if program.instances.iter().any(|instance| instance.program.key() == unit.name.key()) {
+            if instantiated.contains(&unit.name.key()) {
                 continue;
             }
             let place = task.as_ref().map_or(Some(free), |task| self.task_named(task, &names));
@@ -133,10 +134,14 @@ impl Checker<'_> {
         order.sort_by_key(|task| tasks[*task].0);
         order.push(free);
         let mut programs = Vec::with_capacity(instances.len());
+        let mut by_task: Vec<Vec<ProgramInstance>> = vec![Vec::new(); order.len()];
+        for (place, instance) in instances {
+            by_task[place].push(instance);
+        }
         let mut ordered = Vec::with_capacity(order.len());
         for (id, task) in (0..).zip(&order) {
-            let of_task = instances.iter().filter(|(place, _)| place == task);
-            programs.extend(of_task.map(|(_, instance)| ProgramInstance { task: TaskId(id), ..instance.clone() }));
+            let of_task = std::mem::take(&mut by_task[*task]).into_iter();
+            programs.extend(of_task.map(|instance| ProgramInstance { task: TaskId(id), ..instance }));
             let without = Task { name: String::new(), interval: None, span: Span::default() };
             ordered.push(tasks.get(*task).map_or(without, |(_, task)| task.clone()));
         }
@@ -168,26 +173,59 @@ impl Checker<'_> {
         found
     }
 
-    /// Reports program instances and units of one name.
+    /// Reports program instances and units of one name, and no program at all.
     fn check_instance_names(&mut self, instances: &[(usize, ProgramInstance)]) {
         let program = self.program;
+        let mut instances_of: HashMap<String, usize> = HashMap::new();
+        for instance in &program.instances {
+            *instances_of.entry(instance.program.key()).or_default() += 1;
+        }
         let mut names: HashMap<String, Span> = HashMap::new();
-        let units = program.units.iter().map(|unit| &unit.name);
-        for name in units.chain(program.instances.iter().map(|instance| &instance.name)) {
-            let of_its_program = |instance: &&ladder::ProgramInstance| instance.program.key() == name.key();
-            // The only instance of a program may have its name.
-            let alone = program.instances.iter().filter(of_its_program).count() == 1;
-            if let Some(first) = names.get(&name.key()).filter(|_| !alone) {
-                let message = format!("{} `{}` is declared twice", types::with_article("unit"), name.text);
+        let mut declare = |checker: &mut Self, what: &str, name: &Name| {
+            if let Some(first) = names.get(&name.key()) {
+                let message = format!("{what} `{}` is declared twice", name.text);
                 let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
-                self.report.push(problem.related(*first, "declared first here"));
+                checker.report.push(problem.related(*first, "declared first here"));
             } else {
                 names.insert(name.key(), name.span);
             }
+        };
+        for unit in &program.units {
+            let what = match unit.kind {
+                UnitKind::Program { .. } => "the program",
+                // That was said when the types were declared.
+                UnitKind::FunctionBlock if self.is_type_twice(&unit.name) => continue,
+                UnitKind::FunctionBlock => "the function block",
+                UnitKind::Function { .. } => "the function",
+            };
+            declare(self, what, &unit.name);
+        }
+        for instance in &program.instances {
+            let is_only = instance.name.key() == instance.program.key() && instances_of[&instance.program.key()] == 1;
+            // The only instance of a program may have its name.
+            if !is_only {
+                declare(self, "the program instance", &instance.name);
+            }
+        }
+        if instances.len() > 1 {
+            self.check_global_names(instances);
         }
         if instances.is_empty() && !self.report.has_errors() {
             let problem = Diagnostic::new(Code::BadResource, program.name.span, "there is no program that runs");
             self.report.push(problem.hint("function blocks and functions run where a program calls them"));
+        }
+    }
+
+    /// Reports program instances that are called as a global variable: `a.b` would be a variable of the one and a member of the
+    /// other.
+    fn check_global_names(&mut self, instances: &[(usize, ProgramInstance)]) {
+        for (_, instance) in instances {
+            let Some(global) = self.scope.find_global(&instance.name) else { continue };
+            let declared = self.scope.entry(global).variable.span;
+            let message = format!("`{}` is also the name of a program that runs", instance.name);
+            let problem = Diagnostic::new(Code::DuplicateName, declared, message);
+            self.report
+                .push(problem.hint("rename one of the two: traces tell `program.variable` from `variable.member`"));
         }
     }
 }

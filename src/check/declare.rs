@@ -9,7 +9,7 @@ use super::unit::Signature;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
-use crate::ladder::{self, Address, Area, UnitKind, VariableClass};
+use crate::ladder::{self, Address, Area, Name, UnitKind, VariableClass};
 use crate::source::Span;
 
 fn class_name(class: VariableClass) -> &'static str {
@@ -28,6 +28,7 @@ impl Checker<'_> {
     pub(super) fn declare_variables(&mut self) {
         let program = self.program;
         self.declare_types();
+        self.check_function_names();
         let globals = self.register(&program.globals);
         self.resolve_types();
         self.resolve_pending(&program.globals, &globals);
@@ -59,6 +60,17 @@ impl Checker<'_> {
     fn declare_unit(&mut self, unit: &ladder::Unit) -> Vec<Option<VariableId>> {
         if let UnitKind::Function { result: Some(result) } = &unit.kind {
             let typed = self.resolve(result);
+            if let Some((ty, _)) = typed
+                && !matches!(ty, Type::Elementary(_))
+            {
+                let message = format!(
+                    "the result of a function is a single value, and this is {}",
+                    types::with_article(&self.type_name(ty))
+                );
+                let problem = Diagnostic::new(Code::TypeMismatch, result.span, message);
+                self.report.push(problem.hint("hand it over by an `inout` variable"));
+            }
+            let typed = typed.filter(|(ty, _)| matches!(ty, Type::Elementary(_)));
             let (ty, initial) = typed.clone().unwrap_or((Type::Elementary(Elementary::Bool), Initial::Default));
             let name = unit.name.text.clone();
             let variable = Variable {
@@ -118,6 +130,7 @@ impl Checker<'_> {
             _ => None,
         };
         let class = self.effective_class(declared);
+        self.check_class(declared);
         let variable = Variable {
             name: declared.name.text.clone(),
             class,
@@ -134,6 +147,7 @@ impl Checker<'_> {
         };
         match self.scope.add(variable, state) {
             Ok(id) => {
+                self.check_shadowing(&declared.name);
                 if is_elementary(declared) {
                     self.check_placement(declared, Some(id), Type::Elementary(ty.unwrap_or(Elementary::Bool)));
                 }
@@ -152,6 +166,17 @@ impl Checker<'_> {
         }
     }
 
+    /// Reports a program's variable that has the name of a global one: both would be called so in traces and maps.
+    fn check_shadowing(&mut self, name: &Name) {
+        let in_program = self.scope.unit().is_some() && self.is_program();
+        if let Some(global) = self.scope.find_global(&name.text).filter(|_| in_program) {
+            let message = format!("`{}` is global already", name.text);
+            let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
+            let declared = self.scope.entry(global).variable.span;
+            self.report.push(problem.related(declared, "declared here").hint("leave this out to use that one"));
+        }
+    }
+
     /// Notes the type of a variable that was left for later; none where it is broken, which was reported.
     fn settle_type(&mut self, declared: &ladder::Variable, id: Option<VariableId>, typed: Option<Typed>) {
         let Some((ty, initial)) = typed else {
@@ -161,11 +186,17 @@ impl Checker<'_> {
             return;
         };
         if let Some(id) = id {
-            let is_instance = self.holds_instance(ty);
+            let is_instance = self.types.holds_instance(ty);
+            let in_function = self.in_function();
             let entry = self.scope.entry_mut(id);
             (entry.variable.ty, entry.variable.initial) = (ty, initial);
             // What is wrong with an instance that is no memory is said, and not at its uses again.
-            if is_instance && !matches!(declared.class, VariableClass::Memory | VariableClass::InOut) {
+            let stands = match declared.class {
+                VariableClass::Memory => !in_function,
+                VariableClass::InOut => true,
+                _ => false,
+            };
+            if is_instance && !stands {
                 entry.state = State::Broken;
             }
         }
@@ -175,7 +206,7 @@ impl Checker<'_> {
     /// What a declaration of this type cannot say, and its storage.
     fn check_placement(&mut self, declared: &ladder::Variable, id: Option<VariableId>, ty: Type) {
         let class = id.map_or(declared.class, |id| self.scope.entry(id).variable.class);
-        if self.holds_instance(ty) {
+        if self.types.holds_instance(ty) {
             self.check_instance(declared, ty);
         } else if declared.retain
             && matches!(class, VariableClass::Input | VariableClass::Constant)
@@ -236,6 +267,36 @@ impl Checker<'_> {
         declared.class
     }
 
+    /// Whether what is declared can stand where it does.
+    fn check_class(&mut self, declared: &ladder::Variable) {
+        let what = types::with_article(class_name(declared.class));
+        let unit = self.scope.unit().map(|unit| &self.program.units[unit.index()].kind);
+        let (message, hint) = match (unit, declared.class) {
+            (None, VariableClass::Input | VariableClass::Output) if declared.address.is_none() => {
+                (format!("{what} cannot be global"), "declare it in the program, or `global` at an address")
+            }
+            (None, VariableClass::InOut | VariableClass::Temporary) => {
+                (format!("{what} cannot be global"), "declare it in the unit that uses it")
+            }
+            (Some(UnitKind::Program { .. }), VariableClass::InOut) => {
+                ("a program has no in-out variables, for nothing calls it".to_owned(), "declare it with `var`")
+            }
+            (Some(_), VariableClass::InOut) if declared.initial.is_some() || declared.retain => {
+                (format!("{what} is the caller's, and holds nothing of its own"), "leave `:=` and `retain` out")
+            }
+            (Some(UnitKind::Function { .. }), _) if declared.retain => (
+                format!("a function remembers nothing, and so does not retain `{}`", declared.name.text),
+                "leave `retain` out",
+            ),
+            (_, VariableClass::Temporary) if declared.retain => (
+                format!("{what} starts afresh each time, and is not retained"),
+                "leave `retain` out, or declare it with `var`",
+            ),
+            _ => return,
+        };
+        self.report.push(Diagnostic::new(Code::MisplacedDeclaration, declared.name.span, message).hint(hint));
+    }
+
     /// What a declaration of a block instance, or of what holds one, cannot say.
     fn check_instance(&mut self, declared: &ladder::Variable, ty: Type) {
         let instance = format!("an instance of {}", self.type_name(ty));
@@ -253,18 +314,6 @@ impl Checker<'_> {
         if let Some(address) = &declared.address {
             let problem = Diagnostic::new(Code::TypeMismatch, address.span, format!("{instance} has no address"));
             self.report.push(problem.hint("wire one of its outputs to a variable at that address"));
-        }
-    }
-
-    /// Whether a type is that of a block instance, or holds one.
-    pub(super) fn holds_instance(&self, ty: Type) -> bool {
-        match ty {
-            Type::Elementary(_) => false,
-            Type::Block(_) | Type::Unit(_) => true,
-            Type::Array(array) => self.holds_instance(self.types.arrays[array.index()].element),
-            Type::Structure(structure) => {
-                self.types.structures[structure.index()].fields.iter().any(|field| self.holds_instance(field.ty))
-            }
         }
     }
 

@@ -58,6 +58,7 @@ impl Checker<'_> {
     pub(super) fn value(&mut self, expression: &ladder::Expression, ty: Elementary) -> Option<Expression> {
         let operand = match &expression.kind {
             ladder::ExpressionKind::Call { function, arguments } => {
+                self.weigh(1);
                 self.function(function, arguments, expression.span, Some(ty))
             }
             _ => self.operand(expression),
@@ -67,6 +68,7 @@ impl Checker<'_> {
 
     /// An expression of whatever type. `None`: something in it is wrong, and was reported.
     pub(super) fn operand(&mut self, expression: &ladder::Expression) -> Option<Operand> {
+        self.weigh(1);
         match &expression.kind {
             ladder::ExpressionKind::Literal(literal) => self.literal(literal, false, expression.span),
             ladder::ExpressionKind::Read(reference) => self.read(reference).map(Operand::Typed),

@@ -365,7 +365,7 @@ impl Checker<'_> {
                 return None;
             }
         }
-        let (problem, hint) = if self.holds_instance(ty) {
+        let (problem, hint) = if self.types.holds_instance(ty) {
             ("what holds block instances cannot be copied", "copy its members one by one")
         } else if matches!(wired.enable, Some(Wire::Circuit(_))) {
             ("MOVE of an array or structure takes no circuit at EN", "wire a variable, or use the power on its left")
@@ -376,6 +376,7 @@ impl Checker<'_> {
             self.report.push(Diagnostic::new(Code::PowerNotTaken, output.span, message));
             return None;
         } else if let Some(target) = target {
+            self.weigh_copy(ty, call.instance.span);
             return Some(Boxed::Copy(Box::new(Copied { enable: wired.enable, target, source, enabled })));
         } else {
             ("MOVE of an array or structure needs a place to go to", "wire `OUT`")

@@ -2,10 +2,11 @@
 //! has elements, whatever a repetition says.
 
 use super::model::{Initial, PinId, Step, Type};
+use super::type_table::single_values;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ArrayItem, Expression, ExpressionKind, MemberValue, key};
+use crate::ladder::{self, ArrayItem, Expression, ExpressionKind, MemberValue};
 use crate::source::Span;
 
 impl Checker<'_> {
@@ -41,6 +42,7 @@ impl Checker<'_> {
             (ExpressionKind::Array(items), Type::Array(array)) => {
                 let array = &self.types.arrays[array.index()];
                 let (count, element) = (array.count() as usize, array.element);
+                self.note_initial(count as u64, initial.span)?;
                 let mut elements = Vec::new();
                 self.elements(items, element, count, &mut elements, initial.span)?;
                 elements.resize(count, Initial::Default);
@@ -82,7 +84,15 @@ impl Checker<'_> {
         for item in items {
             let repeat = match &item.repeat {
                 None => 1,
-                Some(repeat) => usize::try_from(self.bound(repeat)?).unwrap_or(0),
+                Some(repeat) => {
+                    let times = self.bound(repeat)?;
+                    if times < 0 {
+                        let message = "a value cannot stand for fewer than no elements";
+                        self.report.push(Diagnostic::new(Code::OutOfRange, repeat.span, message));
+                        return None;
+                    }
+                    usize::try_from(times).unwrap_or(usize::MAX)
+                }
             };
             let start = elements.len();
             match &item.value {
@@ -97,6 +107,10 @@ impl Checker<'_> {
                 let message = format!("there are more values here than the {count} elements of the array");
                 self.report.push(Diagnostic::new(Code::OutOfRange, span, message));
                 return None;
+            }
+            let values = one.iter().map(single_values).fold(0, u64::saturating_add);
+            if repeat > 1 && values > one.len() as u64 {
+                self.note_initial(values.saturating_mul(repeat as u64), span)?;
             }
             for _ in 0..repeat {
                 elements.extend_from_slice(&one);
@@ -132,9 +146,8 @@ impl Checker<'_> {
     fn initial_member(&self, ty: Type, name: &str) -> Option<(Step, Type)> {
         match ty {
             Type::Structure(structure) => {
-                let fields = &self.types.structures[structure.index()].fields;
-                let place = fields.iter().position(|field| key(&field.name) == key(name))?;
-                Some((Step::Field(place), fields[place].ty))
+                let place = self.types.field(structure, name)?;
+                Some((Step::Field(place), self.types.structures[structure.index()].fields[place].ty))
             }
             Type::Block(block) => {
                 let (pin, pins) = match block.output(name) {

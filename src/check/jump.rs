@@ -63,8 +63,7 @@ impl Checker<'_> {
     ) -> Option<model::Element> {
         walk.effect(left);
         if walk.in_pin {
-            let problem = Diagnostic::new(Code::MisplacedJump, span, "a jump cannot stand in a circuit at a pin");
-            self.report.push(problem.hint("that circuit only gives a value; jump from a branch of the rung itself"));
+            self.jump_in_pin(span);
         }
         let Some(target) = target else { return Some(model::Element::Return) };
         let Some((index, defined)) = self.labels.rungs.get(&target.key()).copied() else {
@@ -93,6 +92,11 @@ impl Checker<'_> {
         let place = self.labels.running[index];
         let ends = place == self.labels.all_running;
         Some(if ends { model::Element::Return } else { model::Element::Jump(RungIndex(place)) })
+    }
+
+    pub(super) fn jump_in_pin(&mut self, span: Span) {
+        let problem = Diagnostic::new(Code::MisplacedJump, span, "a jump cannot stand in a circuit at a pin");
+        self.report.push(problem.hint("that circuit only gives a value; jump from a branch of the rung itself"));
     }
 
     /// Reports the jump of a branch that goes on behind it.

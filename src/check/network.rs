@@ -40,7 +40,9 @@ impl Power {
 
 /// What is known of the rung that is walked.
 pub(super) struct Walk {
-    /// Its place among all rungs.
+    /// Its unit.
+    pub(super) unit: usize,
+    /// Its place among all rungs of that.
     pub(super) rung: usize,
     /// Whether it runs.
     pub(super) enabled: bool,
@@ -55,6 +57,8 @@ pub(super) struct Walk {
     barrier: Option<Span>,
     /// Whether this is a circuit at a pin.
     pub(super) in_pin: bool,
+    /// Whether this is only one of the ways that an IF or CASE may take.
+    pub(super) conditional: bool,
 }
 
 struct Node {
@@ -69,8 +73,9 @@ struct Node {
 }
 
 impl Walk {
-    fn new(rung: usize, enabled: bool) -> Self {
+    fn new(unit: usize, rung: usize, enabled: bool) -> Self {
         Self {
+            unit,
             rung,
             enabled,
             nodes: HashMap::new(),
@@ -79,6 +84,7 @@ impl Walk {
             conducts: false,
             barrier: None,
             in_pin: false,
+            conditional: false,
         }
     }
 
@@ -110,11 +116,12 @@ impl<'p> Checker<'p> {
                 self.report.push(problem.related(first, "the first is here"));
             }
             if !self.too_deep.contains(&(unit, index)) {
-                let checked = self.rung(rung, index);
+                self.turns = rung.enabled.then_some(1);
+                let checked = self.rung(rung, unit, index);
+                self.turns = None;
                 rungs.extend(rung.enabled.then_some(checked));
             }
         }
-        self.check_usage();
         rungs
     }
 
@@ -123,8 +130,8 @@ impl<'p> Checker<'p> {
         &self.program.units[self.scope.unit().map_or(0, UnitId::index)]
     }
 
-    fn rung(&mut self, rung: &Rung, index: usize) -> model::Rung {
-        let mut walk = Walk::new(index, rung.enabled);
+    fn rung(&mut self, rung: &Rung, unit: usize, index: usize) -> model::Rung {
+        let mut walk = Walk::new(unit, index, rung.enabled);
         let (circuit, _) = self.circuit(&rung.circuit, Power::Maybe, &mut walk);
         let mut unused: Vec<&Node> = walk.nodes.values().filter(|node| node.used.is_none()).collect();
         unused.sort_by_key(|node| node.id.0);
@@ -133,22 +140,22 @@ impl<'p> Checker<'p> {
             self.report.push(problem.hint("its name at the start of a later branch continues from it"));
         }
         if !walk.active {
-            let message = format!("{} has no coil, block or assignment", self.rung_name(index));
+            let message = format!("{} has no coil, block or assignment", self.rung_name(unit, index));
             self.report.push(Diagnostic::new(Code::EmptyRung, rung.span, message));
         } else if let (false, Some(barrier)) = (walk.conducts, walk.barrier) {
-            let message = format!("{} can never conduct: no power passes here", self.rung_name(index));
+            let message = format!("{} can never conduct: no power passes here", self.rung_name(unit, index));
             let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
             self.report.push(problem.hint("`rung off` keeps a rung from running"));
         }
-        let label = rung.name.as_ref().map_or_else(|| self.rung_name(index), |name| name.text.clone());
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(unit, index), |name| name.text.clone());
         model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
     }
 
-    /// A rung by its name or else its number, for messages.
-    pub(super) fn rung_name(&self, index: usize) -> String {
-        match self.drawn().rungs.get(index).and_then(|rung| rung.name.as_ref()) {
+    /// A rung by its name or else its number among all rungs of the source, for messages.
+    pub(super) fn rung_name(&self, unit: usize, index: usize) -> String {
+        match self.program.units[unit].rungs.get(index).and_then(|rung| rung.name.as_ref()) {
             Some(name) => format!("rung {}", clipped(&name.text)),
-            None => format!("rung {}", index + 1),
+            None => format!("rung {}", self.first_rungs[unit] + index + 1),
         }
     }
 
@@ -219,6 +226,7 @@ impl<'p> Checker<'p> {
 
     /// An element and the power on its right. Circuits nest, so that what has none in it is checked in a function of its own.
     fn element(&mut self, element: &ladder::Element, left: Power, walk: &mut Walk) -> (Option<model::Element>, Power) {
+        self.weigh(1);
         match &element.kind {
             ElementKind::Block(call) => {
                 walk.active = true;

@@ -9,7 +9,7 @@ use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::library::{Pin, Takes};
-use crate::ladder::{self, Name, Origin, Reference, Root, Step, VariableClass, key};
+use crate::ladder::{self, Name, Origin, Reference, Root, Step, VariableClass};
 use crate::source::Span;
 
 /// Pin names as a list for people.
@@ -254,8 +254,7 @@ impl Checker<'_> {
             }
             Type::Structure(structure) => {
                 let fields = &self.types.structures[structure.index()].fields;
-                let wanted = name.key();
-                if let Some(place) = fields.iter().position(|field| key(&field.name) == wanted) {
+                if let Some(place) = self.types.field(structure, &name.text) {
                     return Some((model::Step::Field(place), fields[place].ty));
                 }
                 let names: Vec<String> = fields.iter().take(8).map(|field| format!("`{}`", field.name)).collect();

@@ -21,10 +21,12 @@ impl Checker<'_> {
     }
 
     fn statement(&mut self, statement: &ladder::Statement, walk: &mut Walk) -> Option<Statement> {
+        self.weigh(1);
         match &statement.kind {
             StatementKind::Assignment { target, value } => self.assign(target, value),
             StatementKind::Call(call) => self.call(call, statement.span, false, walk).map(Boxed::statement),
             StatementKind::If { branches, otherwise } => {
+                let around = std::mem::replace(&mut walk.conditional, true);
                 let mut checked = Vec::with_capacity(branches.len());
                 for branch in branches {
                     let condition = self.value(&branch.condition, Elementary::Bool);
@@ -32,6 +34,7 @@ impl Checker<'_> {
                     checked.extend(condition.map(|condition| (condition, body)));
                 }
                 let otherwise = self.statements(otherwise, walk);
+                walk.conditional = around;
                 Some(Statement::If { branches: checked, otherwise })
             }
             StatementKind::Case { selector, branches, otherwise } => self.case(selector, branches, otherwise, walk),
@@ -46,6 +49,10 @@ impl Checker<'_> {
                 None
             }
             StatementKind::Exit => Some(Statement::Exit),
+            StatementKind::Return if walk.in_pin => {
+                self.jump_in_pin(statement.span);
+                None
+            }
             StatementKind::Return => Some(Statement::Return),
         }
     }
@@ -63,8 +70,9 @@ impl Checker<'_> {
                 let value = self.value(value, ty)?;
                 Some(Statement::Assignment { target: place, value })
             }
-            Type::Array(_) | Type::Structure(_) if !self.holds_instance(ty) => {
+            Type::Array(_) | Type::Structure(_) if !self.types.holds_instance(ty) => {
                 let source = self.source(value, ty)?;
+                self.weigh_copy(ty, value.span);
                 Some(Statement::Copy { target: place, source })
             }
             _ => {
@@ -73,6 +81,13 @@ impl Checker<'_> {
                 None
             }
         }
+    }
+
+    /// Notes what copying something of a type comes to: all elements of an array are one step, but each member is one.
+    pub(super) fn weigh_copy(&mut self, ty: Type, span: Span) {
+        let before = self.weight();
+        self.weigh(self.types.runs(ty));
+        self.note_large(before, span);
     }
 
     /// What a whole array or structure gets: another of its type.
@@ -107,12 +122,14 @@ impl Checker<'_> {
             let problem = Diagnostic::new(Code::TypeMismatch, selector.span, "CASE compares integers");
             self.report.push(problem.hint("use IF for other conditions"));
         }
+        let around = std::mem::replace(&mut walk.conditional, true);
         let mut checked = Vec::with_capacity(branches.len());
         for branch in branches {
             let labels: Vec<(Value, Value)> = branch.labels.iter().filter_map(|label| self.label(label, ty?)).collect();
             checked.push((labels, self.statements(&branch.body, walk)));
         }
         let otherwise = self.statements(otherwise, walk);
+        walk.conditional = around;
         let selector = self.coerce(operand?, ty?, selector.span)?;
         Some(Statement::Case { selector, branches: checked, otherwise })
     }
@@ -151,33 +168,47 @@ impl Checker<'_> {
             fits
         });
         let ty = written.as_ref().map_or(Elementary::Lint, |(_, ty)| *ty);
-        let [first, last, step] = bounds.map(|bound| {
-            let Some(bound) = bound else { return Some(1) };
-            let problem = "how often a FOR turns must be known before the program runs: this must be a constant";
-            let value = self.value(bound, ty)?.constant();
-            if value.is_none() {
-                let problem = Diagnostic::new(Code::NotConstant, bound.span, problem);
-                self.report.push(problem.hint("turn a constant number of times, and leave with EXIT"));
-            }
-            value?.as_integer()
-        });
+        let turns = self.turns_of(bounds, ty, span);
+        let (before, around) = (self.weight(), self.turns);
+        let count = turns.as_ref().map_or(1, |(.., count)| u64::from(*count));
+        self.turns = around.map(|around| around.saturating_mul(count));
         self.loops += 1;
         let body = self.statements(body, walk);
         self.loops -= 1;
+        self.turns = around;
+        self.note_large(before, span);
+        let (first, step, count) = turns?;
+        let first = Value::integer(ty, first)?;
+        Some(Statement::For { variable: written?.0, first, step, count, body })
+    }
+
+    /// The first value of a FOR, its step, and how often it turns.
+    fn turns_of(&mut self, bounds: [Option<&Expression>; 3], ty: Elementary, span: Span) -> Option<(i128, i128, u32)> {
+        // The step of a variable without a sign may have one.
+        let types = [ty, ty, Elementary::Lint];
+        let mut values = [Some(1); 3];
+        for ((value, bound), ty) in values.iter_mut().zip(bounds).zip(types) {
+            let Some(bound) = bound else { continue };
+            let checked = self.value(bound, ty);
+            *value = checked.as_ref().and_then(|checked| checked.constant()?.as_integer());
+            if checked.is_some_and(|checked| checked.constant().is_none()) {
+                let problem = "how often a FOR turns must be known before the program runs: this must be a constant";
+                let problem = Diagnostic::new(Code::NotConstant, bound.span, problem);
+                self.report.push(problem.hint("turn a constant number of times, and leave with EXIT"));
+            }
+        }
+        let [first, last, step] = values;
         let (first, last, step) = (first?, last?, step?);
         if step == 0 {
             self.report.push(Diagnostic::new(Code::OutOfRange, span, "a FOR with steps of 0 never ends"));
             return None;
         }
         let turns = if (last - first).signum() * step.signum() < 0 { 0 } else { (last - first) / step + 1 };
-        let count = u32::try_from(turns).ok().filter(|_| turns <= MOST_TURNS);
-        let Some(count) = count else {
-            let message = format!("this FOR turns {turns} times");
-            let problem = Diagnostic::new(Code::TooLargeInlined, span, message);
+        let Some(count) = u32::try_from(turns).ok().filter(|_| turns <= MOST_TURNS) else {
+            let problem = Diagnostic::new(Code::TooLargeInlined, span, format!("this FOR turns {turns} times"));
             self.report.push(problem.hint(format!("its turns are written out, at most {MOST_TURNS}")));
             return None;
         };
-        let first = Value::integer(ty, first)?;
-        Some(Statement::For { variable: written?.0, first, step, count, body })
+        Some((first, step, count))
     }
 }

@@ -2,7 +2,7 @@
 //! it is first named, so that the order of declarations does not matter; one that holds itself has no size and is an
 //! error.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::model::{ArrayType, ArrayTypeId, Dimension, Field, Initial, Structure, StructureId, Type, UnitId};
 use super::spelling::{self, Budget};
@@ -13,8 +13,15 @@ use crate::ladder::library::StandardBlock;
 use crate::ladder::{self, Name, TypeKind, TypeReference, UnitKind, key};
 use crate::source::Span;
 
-/// The most elements that one array may have, and all arrays of a program together.
+/// The most elements that one array may have, and the most values that all arrays, structures and instances of a program may
+/// have together.
 pub const MOST_ELEMENTS: u32 = 1 << 20;
+
+/// How deep types may nest in each other.
+const MAXIMUM_NESTING: u32 = 64;
+
+/// The most single initial values that the declarations of a program may come to.
+const MOST_INITIAL_VALUES: u64 = 4 << 20;
 
 /// Every type that is no elementary one and no standard block.
 #[derive(Default)]
@@ -24,12 +31,33 @@ pub(super) struct TypeTable {
     pub(super) arrays: Vec<ArrayType>,
     ids: HashMap<ArrayType, ArrayTypeId>,
     pub(super) structures: Vec<Structure>,
+    /// The members of each structure by their names.
+    fields: Vec<HashMap<String, usize>>,
+    array_facts: Vec<Facts>,
+    structure_facts: Vec<Facts>,
+    /// The declared types that are being resolved.
+    open: u32,
+    /// The function blocks that something names as a type.
+    pub(super) named_units: HashSet<UnitId>,
+    /// How many single initial values were made so far.
+    initial_values: u64,
     /// The values of enumerations, by their names: of which type, and which number. Several enumerations may share a name.
     values: HashMap<String, Vec<(String, Value)>>,
 }
 
 /// A type and what a variable of it starts with.
 pub(super) type Typed = (Type, Initial);
+
+/// What is known of a type from its parts.
+#[derive(Clone, Copy, Default)]
+struct Facts {
+    /// How deep types nest in it.
+    depth: u32,
+    /// Its values, those of one member in all elements counted as one.
+    runs: u64,
+    /// Whether it is a block instance, or holds one.
+    holds_instance: bool,
+}
 
 enum Named {
     /// The declaration at that place.
@@ -47,6 +75,30 @@ impl TypeTable {
             [(_, value)] => Some(Ok(*value)),
             _ => Some(Err(())),
         }
+    }
+
+    fn facts(&self, ty: Type) -> Facts {
+        match ty {
+            Type::Elementary(_) => Facts { depth: 0, runs: 1, holds_instance: false },
+            Type::Block(_) | Type::Unit(_) => Facts { depth: 0, runs: 1, holds_instance: true },
+            Type::Array(array) => self.array_facts[array.index()],
+            Type::Structure(structure) => self.structure_facts[structure.index()],
+        }
+    }
+
+    /// Whether a type is that of a block instance, or holds one.
+    pub(super) fn holds_instance(&self, ty: Type) -> bool {
+        self.facts(ty).holds_instance
+    }
+
+    /// How many values a type has, those of one member in all elements of an array counted as one.
+    pub(super) fn runs(&self, ty: Type) -> u64 {
+        self.facts(ty).runs
+    }
+
+    /// The member of that name of a structure.
+    pub(super) fn field(&self, structure: StructureId, name: &str) -> Option<usize> {
+        self.fields[structure.index()].get(&key(name)).copied()
     }
 
     /// The value of that name of an enumeration.
@@ -80,6 +132,15 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether a function block has the name of a type, which was reported.
+    pub(super) fn is_type_twice(&self, name: &Name) -> bool {
+        let is_own = |unit: &ladder::Unit| unit.name.span == name.span;
+        match self.types.named.get(&name.key()) {
+            Some(Named::Known((Type::Unit(unit), _))) => !is_own(&self.program.units[unit.index()]),
+            _ => true,
+        }
+    }
+
     /// Resolves the declared types that nothing named, too, so that their faults are found.
     pub(super) fn resolve_types(&mut self) {
         for declared in &self.program.types {
@@ -106,9 +167,44 @@ impl Checker<'_> {
         };
         let initial = match initial {
             Initial::Default => Initial::Default,
-            initial => Initial::Elements(vec![initial; count as usize]),
+            initial => {
+                self.note_initial(u64::from(count).saturating_mul(single_values(&initial)), reference.span)?;
+                Initial::Elements(vec![initial; count as usize])
+            }
         };
-        Some((Type::Array(self.array(ArrayType { dimensions, element })), initial))
+        let array = self.array(ArrayType { dimensions, element });
+        self.check_nesting(Type::Array(array), reference.span)?;
+        Some((Type::Array(array), initial))
+    }
+
+    /// Notes initial values that are to be made; none if there are too many.
+    pub(super) fn note_initial(&mut self, values: u64, span: Span) -> Option<()> {
+        let before = self.types.initial_values;
+        self.types.initial_values = before.saturating_add(values);
+        if self.types.initial_values <= MOST_INITIAL_VALUES {
+            return Some(());
+        }
+        if before <= MOST_INITIAL_VALUES {
+            let message = format!("initial values come to more than {MOST_INITIAL_VALUES} from here on");
+            let problem = Diagnostic::new(Code::TooManyElements, span, message);
+            self.report.push(problem.hint("let arrays start with what their type says, or make them smaller"));
+        }
+        None
+    }
+
+    /// Reports a type that is nested too deeply; none if it is.
+    fn check_nesting(&mut self, ty: Type, span: Span) -> Option<()> {
+        let fits = self.types.facts(ty).depth <= MAXIMUM_NESTING;
+        if !fits {
+            self.types_too_deep(span);
+        }
+        fits.then_some(())
+    }
+
+    fn types_too_deep(&mut self, span: Span) {
+        let message = format!("types are nested more than {MAXIMUM_NESTING} deep here");
+        let problem = Diagnostic::new(Code::TooDeep, span, message);
+        self.report.push(problem.hint("put members side by side instead of into each other"));
     }
 
     /// An array type; those that are alike are one.
@@ -116,6 +212,8 @@ impl Checker<'_> {
         let next = ArrayTypeId(u32::try_from(self.types.arrays.len()).unwrap_or(u32::MAX));
         let id = *self.types.ids.entry(array.clone()).or_insert(next);
         if id == next {
+            let element = self.types.facts(array.element);
+            self.types.array_facts.push(Facts { depth: element.depth + 1, ..element });
             self.types.arrays.push(array);
         }
         id
@@ -163,7 +261,19 @@ impl Checker<'_> {
             return Some((Type::Block(block), Initial::Default));
         }
         let index = match self.types.named.get(&name.key()) {
-            Some(Named::Known(typed)) => return Some(typed.clone()),
+            Some(Named::Known((ty, initial))) => {
+                let (ty, values) = (*ty, single_values(initial));
+                if let Type::Unit(unit) = ty {
+                    self.types.named_units.insert(unit);
+                }
+                if values > 1 {
+                    self.note_initial(values, name.span)?;
+                }
+                return match self.types.named.get(&name.key()) {
+                    Some(Named::Known((_, initial))) => Some((ty, initial.clone())),
+                    _ => None,
+                };
+            }
             Some(Named::Broken) => return None,
             Some(Named::Open) => {
                 let message = format!("`{}` holds itself, and so has no size", name.text);
@@ -176,8 +286,14 @@ impl Checker<'_> {
                 return None;
             }
         };
+        if self.types.open > MAXIMUM_NESTING {
+            self.types_too_deep(name.span);
+            return None;
+        }
         self.types.named.insert(name.key(), Named::Open);
+        self.types.open += 1;
         let resolved = self.declared_type(&self.program.types[index]);
+        self.types.open -= 1;
         let named = resolved.clone().map_or(Named::Broken, Named::Known);
         self.types.named.insert(name.key(), named);
         resolved
@@ -202,7 +318,8 @@ impl Checker<'_> {
             Type::Array(array) => {
                 let array = &self.types.arrays[array.index()];
                 let bounds = array.dimensions.iter().map(|dimension| {
-                    format!("{}..{}", dimension.first, dimension.first + i64::from(dimension.count) - 1)
+                    let last = i128::from(dimension.first) + i128::from(dimension.count) - 1;
+                    format!("{}..{last}", dimension.first)
                 });
                 let bounds: Vec<String> = bounds.collect();
                 format!("array [{}] of {}", bounds.join(", "), self.type_name(array.element))
@@ -240,9 +357,12 @@ impl Checker<'_> {
 
     fn structure(&mut self, name: &Name, declared: &[ladder::Field]) -> Option<Typed> {
         let mut fields: Vec<Field> = Vec::with_capacity(declared.len());
+        let mut places = HashMap::with_capacity(declared.len());
+        let mut names = HashSet::with_capacity(declared.len());
+        let mut facts = Facts::default();
         let mut whole = true;
         for field in declared {
-            if fields.iter().any(|other| key(&other.name) == field.name.key()) {
+            if !names.insert(field.name.key()) {
                 let message = format!("`{}` has two members `{}`", name.text, field.name.text);
                 self.report.push(Diagnostic::new(Code::DuplicateName, field.name.span, message));
             }
@@ -251,7 +371,14 @@ impl Checker<'_> {
                 None => Some((ty, default)),
             });
             match typed {
-                Some((ty, initial)) => fields.push(Field { name: field.name.text.clone(), ty, initial }),
+                Some((ty, initial)) => {
+                    let of_field = self.types.facts(ty);
+                    facts.depth = facts.depth.max(of_field.depth + 1);
+                    facts.runs = facts.runs.saturating_add(of_field.runs);
+                    facts.holds_instance |= of_field.holds_instance;
+                    places.insert(field.name.key(), fields.len());
+                    fields.push(Field { name: field.name.text.clone(), ty, initial });
+                }
                 None => whole = false,
             }
         }
@@ -262,6 +389,9 @@ impl Checker<'_> {
         }
         let id = StructureId(u32::try_from(self.types.structures.len()).unwrap_or(u32::MAX));
         self.types.structures.push(Structure { name: name.text.clone(), fields });
+        self.types.fields.push(places);
+        self.types.structure_facts.push(facts);
+        self.check_nesting(Type::Structure(id), name.span)?;
         whole.then_some((Type::Structure(id), Initial::Default))
     }
 
@@ -318,5 +448,14 @@ impl Checker<'_> {
             }
         };
         Some((Type::Elementary(ty), Initial::Value(start?)))
+    }
+}
+
+/// How many single values an initial value has.
+pub(super) fn single_values(initial: &Initial) -> u64 {
+    match initial {
+        Initial::Default | Initial::Value(_) => 1,
+        Initial::Elements(elements) => elements.iter().map(single_values).fold(1, u64::saturating_add),
+        Initial::Members(members) => members.iter().map(|(_, value)| single_values(value)).fold(1, u64::saturating_add),
     }
 }

@@ -1,5 +1,4 @@
-//! Units: what a call gives them and takes from them, what they call, and how large they are once every call is written
-//! out. What calls itself is an error, and so is what would not end in time.
+//! Units: what a call gives them and takes from them, what they call, and how much they do.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -7,10 +6,11 @@ use std::ops::Range;
 use super::Checker;
 use super::model::{Rung, Unit, UnitId, VariableId};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{self, Name, UnitKind, VariableClass};
+use crate::ladder::functions::Function;
+use crate::ladder::{self, Name, Origin, UnitKind, VariableClass};
 use crate::source::Span;
 
-/// The most elements, statements and operators that all calls together may write out.
+/// The most elements, statements and operators that all calls and loops together may write out.
 pub const MOST_INLINED: u64 = 1 << 20;
 
 /// A unit as its callers see it.
@@ -20,11 +20,24 @@ pub(super) struct Signature {
     pub(super) inputs: Vec<VariableId>,
     pub(super) outputs: Vec<VariableId>,
     pub(super) references: Vec<VariableId>,
-    /// The units that it calls, or has instances of, each with the first place.
-    pub(super) uses: Vec<(UnitId, Span)>,
-    /// The calls that it makes, and what of its own is written out with each call of it.
-    pub(super) calls: Vec<(UnitId, Span)>,
+    /// The calls of units that its rungs make that run.
+    pub(super) calls: Vec<UnitCall>,
+    /// Elements, statements and operators of those rungs, as often as FORs repeat them.
     pub(super) weight: u64,
+    /// The same as drawn.
+    pub(super) drawn: u64,
+    /// The statement that comes to most when it is written out, and to how much.
+    pub(super) loops: Option<(u64, Span)>,
+    /// Whether anything calls it, in a rung that runs or not, or declares an instance.
+    pub(super) used: bool,
+}
+
+/// A call of a unit.
+pub(super) struct UnitCall {
+    pub(super) callee: UnitId,
+    pub(super) span: Span,
+    /// How often the FORs around it repeat it.
+    pub(super) times: u64,
 }
 
 impl Signature {
@@ -34,9 +47,11 @@ impl Signature {
             inputs: Vec::new(),
             outputs: Vec::new(),
             references: Vec::new(),
-            uses: Vec::new(),
             calls: Vec::new(),
             weight: 0,
+            drawn: 0,
+            loops: None,
+            used: false,
         }
     }
 }
@@ -59,6 +74,32 @@ impl Checker<'_> {
         }
     }
 
+    /// Reports functions of the program that hide standard ones; another tool may have meant that.
+    pub(super) fn check_function_names(&mut self) {
+        for unit in &self.program.units {
+            let hides =
+                matches!(unit.kind, UnitKind::Function { .. }) && Function::from_name(&unit.name.text).is_some();
+            if hides && self.program.origin == Origin::Native {
+                let message = format!("there is a standard function `{}` already", unit.name.text);
+                self.report.push(Diagnostic::new(Code::DuplicateName, unit.name.span, message));
+            }
+        }
+    }
+
+    /// Reports blocks and functions that nothing calls.
+    pub(super) fn check_unused_units(&mut self) {
+        for (index, (unit, signature)) in (0..).zip(self.program.units.iter().zip(&self.units)) {
+            let is_used = matches!(unit.kind, UnitKind::Program { .. })
+                || signature.used
+                || self.types.named_units.contains(&UnitId(index));
+            if !is_used && !unit.name.text.starts_with('_') {
+                let message = format!("nothing calls `{}`", unit.name.text);
+                let problem = Diagnostic::new(Code::UnusedName, unit.name.span, message);
+                self.report.push(problem.hint("a name that starts with `_` may stay unused"));
+            }
+        }
+    }
+
     /// The function of that name that the program declares.
     pub(super) fn function_unit(&self, name: &Name) -> Option<UnitId> {
         if self.functions.is_empty() { None } else { self.functions.get(&name.key()).copied() }
@@ -66,78 +107,34 @@ impl Checker<'_> {
 
     /// Notes that the unit that is being checked calls another.
     pub(super) fn note_unit_call(&mut self, callee: UnitId, span: Span) {
-        if let Some(caller) = self.scope.unit() {
-            self.units[caller.index()].calls.push((callee, span));
+        self.units[callee.index()].used = true;
+        if let (Some(caller), Some(times)) = (self.scope.unit(), self.turns) {
+            self.units[caller.index()].calls.push(UnitCall { callee, span, times });
         }
     }
 
-    /// Reports units that call themselves, and programs whose calls written out are too large.
-    pub(super) fn check_calls_end(&mut self) {
-        let mut sizes: Vec<Option<u64>> = vec![None; self.units.len()];
-        let mut open = vec![false; self.units.len()];
-        for unit in 0..self.units.len() {
-            self.size_of(unit, &mut sizes, &mut open);
-        }
-        for (index, unit) in self.program.units.iter().enumerate() {
-            let is_program = matches!(unit.kind, UnitKind::Program { .. });
-            let size = sizes[index].unwrap_or(0).saturating_sub(if is_program { self.units[index].weight } else { 0 });
-            if is_program && size > MOST_INLINED {
-                let largest = self.units[index].calls.iter().max_by_key(|(callee, _)| sizes[callee.index()]);
-                let Some((callee, span)) = largest.copied() else { continue };
-                let message = format!(
-                    "the calls of `{}` come to {size} elements, {} of them by each call of `{}`",
-                    unit.name.text,
-                    sizes[callee.index()].unwrap_or(0),
-                    self.program.units[callee.index()].name.text,
-                );
-                let problem = Diagnostic::new(Code::TooLargeInlined, span, message);
-                self.report.push(
-                    problem
-                        .hint(format!("what is called is written out where it is called, to at most {MOST_INLINED}")),
-                );
-            }
+    /// Notes an element, statement or operator of the unit that is being checked, or what one comes to.
+    pub(super) fn weigh(&mut self, weight: u64) {
+        if let (Some(unit), Some(turns)) = (self.scope.unit(), self.turns) {
+            // A number that a declaration needs before there are units weighs nothing.
+            let Some(unit) = self.units.get_mut(unit.index()) else { return };
+            unit.weight = unit.weight.saturating_add(turns.saturating_mul(weight));
+            unit.drawn = unit.drawn.saturating_add(1);
         }
     }
 
-    /// The size of a unit with all calls written out. The walk keeps its own stack, since calls may nest as deep as there are units.
-    fn size_of(&mut self, unit: usize, sizes: &mut [Option<u64>], open: &mut [bool]) {
-        let mut stack = vec![(unit, 0usize)];
-        while let Some((unit, next)) = stack.last_mut() {
-            let unit = *unit;
-            if sizes[unit].is_some() {
-                stack.pop();
-                continue;
-            }
-            open[unit] = true;
-            let callees = self.units[unit].calls.len() + self.units[unit].uses.len();
-            if *next < callees {
-                let calls = &self.units[unit].calls;
-                let (callee, span) =
-                    calls.get(*next).copied().unwrap_or_else(|| self.units[unit].uses[*next - calls.len()]);
-                *next += 1;
-                if open[callee.index()] && sizes[callee.index()].is_none() {
-                    self.report_recursion(unit, callee, span);
-                } else if sizes[callee.index()].is_none() {
-                    stack.push((callee.index(), 0));
-                }
-                continue;
-            }
-            let calls = &self.units[unit].calls;
-            let inner = calls.iter().map(|(callee, _)| sizes[callee.index()].unwrap_or(0));
-            sizes[unit] = Some(inner.fold(self.units[unit].weight, u64::saturating_add));
-            stack.pop();
+    /// Notes a statement that comes to more than is drawn, with the weight that its unit had before.
+    pub(super) fn note_large(&mut self, before: u64, span: Span) {
+        let Some(unit) = self.scope.unit().and_then(|unit| self.units.get_mut(unit.index())) else { return };
+        let weight = unit.weight.saturating_sub(before);
+        if unit.loops.is_none_or(|(most, _)| most < weight) {
+            unit.loops = Some((weight, span));
         }
     }
 
-    fn report_recursion(&mut self, caller: usize, callee: UnitId, span: Span) {
-        let [caller, callee] = [caller, callee.index()].map(|unit| &self.program.units[unit].name);
-        let message = if caller.key() == callee.key() {
-            format!("`{}` calls or holds itself", caller.text)
-        } else {
-            format!("`{}` calls or holds `{}`, which in turn needs `{}`", caller.text, callee.text, caller.text)
-        };
-        let problem = Diagnostic::new(Code::RecursiveUnit, span, message).related(callee.span, "declared here");
-        self.report.push(problem.hint("a scan is a straight line: what is called is written out where it is called"));
+    /// The weight so far of the unit that is being checked.
+    pub(super) fn weight(&self) -> u64 {
+        self.scope.unit().and_then(|unit| self.units.get(unit.index())).map_or(0, |unit| unit.weight)
     }
 }
 
@@ -161,4 +158,14 @@ pub(super) fn functions(program: &ladder::Program) -> HashMap<String, UnitId> {
         }
     }
     functions
+}
+
+/// How many rungs stand before those of each unit.
+pub(super) fn first_rungs(program: &ladder::Program) -> Vec<usize> {
+    let before = |so_far: &mut usize, unit: &ladder::Unit| {
+        let first = *so_far;
+        *so_far += unit.rungs.len();
+        Some(first)
+    };
+    program.units.iter().scan(0, before).collect()
 }

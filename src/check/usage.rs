@@ -3,8 +3,9 @@
 //! that of too many findings the same ones are kept in every run.
 
 use super::Checker;
-use super::model::{Index, Place, Step, VariableId};
+use super::model::{Place, VariableId};
 use super::network::Walk;
+use super::register::is_constant;
 use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{CoilKind, VariableClass};
@@ -29,13 +30,16 @@ type Key = (VariableId, String, Option<u8>);
 struct Call {
     instance: VariableId,
     span: Span,
-    rung: usize,
+    rung: RungPlace,
 }
+
+/// A rung: its unit, and its place there.
+type RungPlace = (usize, usize);
 
 struct Coil {
     variable: VariableId,
     span: Span,
-    rung: usize,
+    rung: RungPlace,
     /// Whether it writes only while it has power, so that others do not disturb it nor it them.
     latches: bool,
 }
@@ -46,32 +50,29 @@ impl Checker<'_> {
             && let Some(key) = self.key(target)
         {
             let latches = matches!(kind, CoilKind::Set | CoilKind::Reset);
-            let coil = Coil { variable: target.variable, span, rung: walk.rung, latches };
+            let coil = Coil { variable: target.variable, span, rung: (walk.unit, walk.rung), latches };
             self.usage.coils.push((key, coil));
         }
     }
 
     pub(super) fn note_call(&mut self, instance: &Place, span: Span, walk: &Walk) {
         if walk.enabled
+            && !walk.conditional
             && let Some(key) = self.key(instance)
         {
-            self.usage.calls.push((key, Call { instance: instance.variable, span, rung: walk.rung }));
+            self.usage.calls.push((key, Call { instance: instance.variable, span, rung: (walk.unit, walk.rung) }));
         }
     }
 
     fn key(&self, place: &Place) -> Option<Key> {
-        let computed = |step: &Step| match step {
-            Step::Element(indices) => indices.iter().any(|index| matches!(index, Index::Computed(_))),
-            _ => false,
-        };
-        if place.path.iter().any(computed) {
+        if !is_constant(place) {
             return None;
         }
         let path = if place.path.is_empty() { String::new() } else { format!("{:?}", place.path) };
         Some((self.scope.storage(place.variable), path, place.bit))
     }
 
-    /// Reports what the rungs of the unit that was just checked show together.
+    /// Reports what the rungs of all units show together.
     pub(super) fn check_usage(&mut self) {
         let Usage { mut coils, mut calls } = std::mem::take(&mut self.usage);
         // Both sorts keep the order of the rungs among equals.
@@ -97,7 +98,7 @@ impl Checker<'_> {
         let mut problem = Diagnostic::new(Code::DoubleCoil, last.span, message)
             .hint("the last one decides; join the circuits in one rung, or use only set and reset coils");
         for (_, coil) in earlier.iter().take(MOST_RELATED) {
-            let note = format!("`{}` is written here, in {}", name(coil), self.rung_name(coil.rung));
+            let note = format!("`{}` is written here, in {}", name(coil), self.rung_in_unit(coil.rung));
             problem = problem.related(coil.span, note);
         }
         self.report.push(problem);
@@ -114,11 +115,20 @@ impl Checker<'_> {
         self.report.push(problem);
     }
 
-    fn both(&self, first: usize, last: usize) -> String {
+    fn both(&self, first: RungPlace, last: RungPlace) -> String {
         if first == last {
-            format!("{}, more than once", self.rung_name(first))
+            format!("{}, more than once", self.rung_in_unit(first))
         } else {
-            format!("{} and {}", self.rung_name(first), self.rung_name(last))
+            format!("{} and {}", self.rung_in_unit(first), self.rung_in_unit(last))
+        }
+    }
+
+    /// A rung by its name or number, and its unit where there are several.
+    fn rung_in_unit(&self, (unit, rung): RungPlace) -> String {
+        let name = self.rung_name(unit, rung);
+        match self.program.units.as_slice() {
+            [_] => name,
+            units => format!("{name} of {}", clipped(&units[unit].name.text)),
         }
     }
 
