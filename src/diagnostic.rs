@@ -74,6 +74,8 @@ codes! {
     UnboundedLoop = 208 Error "a loop without a constant number of times",
     BadXml = 221 Error "XML that cannot be read",
     BadElement = 222 Error "an element that lacks what it needs",
+    NotSupported = 209 Error "something that Rung has not",
+    CannotConvert = 210 Error "something that the other format has not",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
