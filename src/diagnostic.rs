@@ -120,7 +120,6 @@ codes! {
     TooManyWarnings = 603 Warning "too many warnings",
     TooManyElements = 604 Error "arrays with too many elements",
     TooLargeInlined = 605 Error "too much is called within calls",
-    NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",
