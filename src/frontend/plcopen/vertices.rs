@@ -15,8 +15,8 @@ use crate::diagnostic::Code;
 use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::{
-    Argument, BinaryOperator, BlockCall, ContactKind, ElementKind, Expression, ExpressionKind, FunctionArgument, Literal,
-    Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire,
+    Argument, BinaryOperator, BlockCall, ContactKind, ElementKind, Expression, ExpressionKind, FunctionArgument,
+    Literal, Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire,
 };
 use crate::source::Span;
 
@@ -169,9 +169,11 @@ impl<'d, 'r> Builder<'d, 'r> {
             && !enabled
             && uses.iter().all(|used| Some(used.output) != eno && Some(used.output) == result)
             && block.inputs.iter().any(|input| !input.sources.is_empty())
-            && block.inputs.iter().enumerate().all(|(pin, input)| {
-                !takes_power(self.scope, block, pin) && !(input.in_out && !input.sources.is_empty())
-            })
+            && block
+                .inputs
+                .iter()
+                .enumerate()
+                .all(|(pin, input)| !takes_power(self.scope, block, pin) && (!input.in_out || input.sources.is_empty()))
     }
 
     fn main_output(&self, block: &Block, uses: &[Use]) -> Option<usize> {
@@ -181,7 +183,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             return Some(eno);
         }
         let first = self.scope.signatures.power_output(&block.type_name.text).and_then(|pin| block.output(&pin));
-        let first = first.filter(|first| used(*first)).or_else(|| (0..block.outputs.len()).find(|output| used(*output)));
+        let first =
+            first.filter(|first| used(*first)).or_else(|| (0..block.outputs.len()).find(|output| used(*output)));
         first.filter(plain)
     }
 
@@ -308,8 +311,12 @@ impl<'d, 'r> Builder<'d, 'r> {
         // The edge of what is inverted is the other edge.
         let rising = (edge == Edge::Rising) != modifier.negated;
         if let [Feed::Vertex(vertex)] = feeds.as_slice()
-            && let Some(Vertex { kind: ElementKind::Contact { kind: kind @ ContactKind::Open, .. }, feeds: rail, item: of, .. }) =
-                self.vertices.get_mut(*vertex)
+            && let Some(Vertex {
+                kind: ElementKind::Contact { kind: kind @ ContactKind::Open, .. },
+                feeds: rail,
+                item: of,
+                ..
+            }) = self.vertices.get_mut(*vertex)
             && *of == item
             && rail == &[Feed::Rail]
         {
@@ -379,6 +386,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 && !pin.negated
                 && !coil.modifier.negated
                 && let ElementKind::Block(call) = &mut self.vertices[vertex].kind
+                && !call.arguments.iter().any(|wired| {
+                    matches!(wired.wire, Wire::Output(_)) && wired.pin.text.eq_ignore_ascii_case(&pin.name.text)
+                })
             {
                 let span = self.diagram.items[item].span;
                 call.arguments.push(Argument { pin: pin.name.clone(), wire: Wire::Output(coil.target.clone()), span });
@@ -430,7 +440,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             Some(instance) => {
                 // The power on the left would go to the first BOOL input; one without a wire keeps its value.
                 let power = self.scope.signatures.power_input(&name.text);
-                let open = power.filter(|power| block.input(power).is_none_or(|pin| block.inputs[pin].sources.is_empty()));
+                let open =
+                    power.filter(|power| block.input(power).is_none_or(|pin| block.inputs[pin].sources.is_empty()));
                 if let Some(open) = open {
                     let open = Name::new(open, span);
                     let value = read_member(instance, &open, span);
@@ -481,11 +492,16 @@ impl<'d, 'r> Builder<'d, 'r> {
     fn is_read(&self, item: usize, output: usize) -> bool {
         let step = self.order.step[item];
         let uses = self.uses.get(&item).map_or(&[][..], Vec::as_slice);
-        uses.iter().filter(|used| used.output == output).any(|used| {
+        let mut at_once = 0;
+        let other = uses.iter().filter(|used| used.output == output).any(|used| {
             let behind = self.order.step[used.user] > step;
             let taken = behind && used.power && self.main[item] == Some(output) && !self.negated(item, output);
-            !taken && !(behind && self.is_taken_at_once(item, used))
-        })
+            let wired = behind && self.is_taken_at_once(item, used);
+            at_once += usize::from(wired);
+            !taken && !wired
+        });
+        // An output is wired once.
+        other || at_once > 1
     }
 
     /// Whether a variable takes an output before anything else has an effect.
@@ -521,7 +537,8 @@ impl<'d, 'r> Builder<'d, 'r> {
         let back = uses.iter().any(|used| used.output == output && self.order.step[used.user] <= self.order.step[item]);
         let class = if back { VariableClass::Memory } else { VariableClass::Temporary };
         let ty = self.type_of(item, output, 0).unwrap_or_else(|| elementary(Elementary::Int, span));
-        let variable = Variable { class, name: name.clone(), ty: Some(ty), address: None, initial: None, retain: false, span };
+        let variable =
+            Variable { class, name: name.clone(), ty: Some(ty), address: None, initial: None, retain: false, span };
         self.hidden.push(variable);
         self.kept.insert((item, output), name.clone());
         name
@@ -551,20 +568,23 @@ impl<'d, 'r> Builder<'d, 'r> {
             };
             operands.push((input.name.text.clone(), ty));
         }
-        let given = self.scope.signatures.result(&block.type_name.text, &block.outputs[output].name.text, &operands, span);
+        let given =
+            self.scope.signatures.result(&block.type_name.text, &block.outputs[output].name.text, &operands, span);
         given.or_else(|| {
             let uses = self.uses.get(&item).map_or(&[][..], Vec::as_slice);
-            uses.iter().filter(|used| used.output == output).find_map(|used| match &self.diagram.items[used.user].kind {
-                _ if used.power => Some(elementary(Elementary::Bool, span)),
-                ItemKind::Coil(coil) => {
-                    let kind = ExpressionKind::Read(coil.target.clone());
-                    self.scope.value(&Expression { kind, span })
+            uses.iter().filter(|used| used.output == output).find_map(|used| {
+                match &self.diagram.items[used.user].kind {
+                    _ if used.power => Some(elementary(Elementary::Bool, span)),
+                    ItemKind::Coil(coil) => {
+                        let kind = ExpressionKind::Read(coil.target.clone());
+                        self.scope.value(&Expression { kind, span })
+                    }
+                    ItemKind::Block(user) => {
+                        let pin = user.inputs.iter().find(|pin| pin.sources.contains(&Source::Output(item, output)))?;
+                        self.scope.signatures.pin(&user.type_name.text, &pin.name.text, span)
+                    }
+                    _ => None,
                 }
-                ItemKind::Block(user) => {
-                    let pin = user.inputs.iter().find(|pin| pin.sources.contains(&Source::Output(item, output)))?;
-                    self.scope.signatures.pin(&user.type_name.text, &pin.name.text, span)
-                }
-                _ => None,
             })
         })
     }
@@ -620,7 +640,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 let pin = &block.outputs[output];
                 let value = match &block.instance {
                     _ if self.forms[item] != Form::Box => self.formula(item, block),
-                    Some(instance) if !pin.name.text.eq_ignore_ascii_case("ENO") => read_member(instance, &pin.name, span),
+                    Some(instance) if !pin.name.text.eq_ignore_ascii_case("ENO") => {
+                        read_member(instance, &pin.name, span)
+                    }
                     _ => {
                         let variable = self.keep(item, output);
                         Expression { kind: ExpressionKind::Read(Reference::of_name(variable)), span }
@@ -666,9 +688,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 return negate(operands.remove(0).1);
             }
             _ => {
-                let arguments = operands.into_iter().map(|(name, value)| {
-                    FunctionArgument { parameter: (!in_order).then_some(name), value }
-                });
+                let arguments = operands
+                    .into_iter()
+                    .map(|(name, value)| FunctionArgument { parameter: (!in_order).then_some(name), value });
                 ExpressionKind::Call { function: block.type_name.clone(), arguments: arguments.collect() }
             }
         };
