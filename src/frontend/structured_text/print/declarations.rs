@@ -102,7 +102,7 @@ pub(super) fn variables(
     problems: &mut Vec<Diagnostic>,
 ) {
     let own: HashSet<String> = unit.variables.iter().map(|variable| variable.name.key()).collect();
-    let mut used: HashSet<String> = HashSet::new();
+    let (mut used, mut called) = (HashSet::new(), HashSet::new());
     let mut instances: Vec<(String, String)> = Vec::new();
     let registers = ["ireg", "oreg", "hreg"];
     let globals: HashMap<String, &Variable> =
@@ -113,7 +113,7 @@ pub(super) fn variables(
                 && let Some(name) = instance.as_name()
                 && !own.contains(&name.key())
                 && !globals.contains_key(&name.key())
-                && used.insert(name.key())
+                && called.insert(name.key())
             {
                 let ty = words.names.spell_type(&ty.text).into_owned();
                 instances.push((words.names.spell(&name.text).into_owned(), ty));
@@ -132,7 +132,7 @@ pub(super) fn variables(
             }
             used.insert(root);
         };
-        for rung in unit.rungs.iter().filter(|rung| rung.enabled) {
+        for rung in &unit.rungs {
             uses::circuit(&rung.circuit, &mut visit);
         }
         for initial in unit.variables.iter().filter_map(|variable| variable.initial.as_ref()) {

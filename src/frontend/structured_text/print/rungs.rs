@@ -90,7 +90,7 @@ impl<'a> Rungs<'a> {
                 if !active.is_empty() {
                     let condition = off(&active);
                     self.open(&condition);
-                    // A branch of IF is never empty, even if all of its rungs are off.
+                    // A branch of IF is never empty, even if its rungs do nothing.
                     self.line(";");
                 }
                 open = active;
@@ -98,6 +98,15 @@ impl<'a> Rungs<'a> {
             self.text.push_str(&before(rung));
             if rung.enabled {
                 self.rung(place, rung);
+            } else {
+                // Not run, but there for whoever reads it.
+                self.open("FALSE");
+                let start = self.text.len();
+                self.rung(place, rung);
+                if self.text.len() == start {
+                    self.line(";");
+                }
+                self.close();
             }
         }
         if !open.is_empty() {
