@@ -85,21 +85,8 @@ impl Rungs<'_> {
     /// leaves it as it is. Where nobody can see it, an IF around the call says the same to more compilers.
     fn keeps_inputs(&self, call: &BlockCall) -> bool {
         let Root::Name(instance) = &call.instance.root else { return true };
-        let (mut read, mut calls) = (false, 0);
-        for rung in &self.unit.rungs {
-            uses::circuit(&rung.circuit, &mut |mentioned| {
-                let uses::Use::Reference(reference) = mentioned else { return };
-                if uses::root_key(mentioned) != Some(instance.key()) {
-                    return;
-                }
-                calls += usize::from(reference.steps.len() == call.instance.steps.len());
-                read |= reference.steps.iter().any(|step| match step {
-                    Step::Member(member) => pin(call, &member.text).is_some(),
-                    _ => false,
-                });
-            });
-        }
-        read || calls > 1
+        let Some(mentions) = self.mentions.get(&instance.key()) else { return false };
+        mentions.count > 1 || call.arguments.iter().any(|argument| mentions.members.contains(&argument.pin.key()))
     }
 
     /// The arguments of a block in words, in their order, with the power on the left and on EN when all are computed.

@@ -2,10 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::calls::is_iec;
 use super::names::Names;
 use super::uses::{self, Use};
 use super::words::Words;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ladder::library::StandardBlock;
 use crate::ladder::{Expression, Program, TypeKind, Unit, UnitKind, Variable, VariableClass, key};
 
 /// What runs, as it is written.
@@ -101,6 +103,13 @@ pub(super) fn variables(
     words: Words<'_>,
     problems: &mut Vec<Diagnostic>,
 ) {
+    for variable in &unit.variables {
+        let block = variable.ty.as_ref().and_then(|ty| StandardBlock::from_name(&ty.name.text));
+        if block.is_some_and(|block| !is_iec(block)) {
+            let message = format!("`{}` is a block of the register machine", variable.name.text);
+            problems.push(Diagnostic::new(Code::CannotConvert, variable.span, message));
+        }
+    }
     let own: HashSet<String> = unit.variables.iter().map(|variable| variable.name.key()).collect();
     let (mut used, mut called) = (HashSet::new(), HashSet::new());
     let mut instances: Vec<(String, String)> = Vec::new();
