@@ -85,7 +85,7 @@ fn unit(
 /// The comments before a rung, and its name and title as one more.
 fn before_rung(rung: &Rung, comments: &mut Comments<'_>) -> String {
     let mut text = comments.before(rung.span.start, 1);
-    let off = (!rung.enabled).then_some("off: not written");
+    let off = (!rung.enabled).then_some("off");
     let parts = [rung.name.as_ref().map(|name| name.text.as_str()), rung.title.as_deref(), off];
     let parts: Vec<&str> = parts.into_iter().flatten().collect();
     if !parts.is_empty() {

@@ -2,10 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::calls::is_iec;
 use super::names::Names;
 use super::uses::{self, Use};
 use super::words::Words;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ladder::library::StandardBlock;
 use crate::ladder::{Expression, Program, TypeKind, Unit, UnitKind, Variable, VariableClass, key};
 
 /// What runs, as it is written.
@@ -101,8 +103,15 @@ pub(super) fn variables(
     words: Words<'_>,
     problems: &mut Vec<Diagnostic>,
 ) {
+    for variable in &unit.variables {
+        let block = variable.ty.as_ref().and_then(|ty| StandardBlock::from_name(&ty.name.text));
+        if block.is_some_and(|block| !is_iec(block)) {
+            let message = format!("`{}` is a block of the register machine", variable.name.text);
+            problems.push(Diagnostic::new(Code::CannotConvert, variable.span, message));
+        }
+    }
     let own: HashSet<String> = unit.variables.iter().map(|variable| variable.name.key()).collect();
-    let mut used: HashSet<String> = HashSet::new();
+    let (mut used, mut called) = (HashSet::new(), HashSet::new());
     let mut instances: Vec<(String, String)> = Vec::new();
     let registers = ["ireg", "oreg", "hreg"];
     let globals: HashMap<String, &Variable> =
@@ -113,7 +122,7 @@ pub(super) fn variables(
                 && let Some(name) = instance.as_name()
                 && !own.contains(&name.key())
                 && !globals.contains_key(&name.key())
-                && used.insert(name.key())
+                && called.insert(name.key())
             {
                 let ty = words.names.spell_type(&ty.text).into_owned();
                 instances.push((words.names.spell(&name.text).into_owned(), ty));
@@ -132,7 +141,7 @@ pub(super) fn variables(
             }
             used.insert(root);
         };
-        for rung in unit.rungs.iter().filter(|rung| rung.enabled) {
+        for rung in &unit.rungs {
             uses::circuit(&rung.circuit, &mut visit);
         }
         for initial in unit.variables.iter().filter_map(|variable| variable.initial.as_ref()) {

@@ -63,6 +63,11 @@ impl Words<'_> {
                 text.push_str(&format!(" {} ", operator.symbol()));
                 self.push_operand(text, right, precedence(right) <= operator.precedence());
             }
+            // Before a parenthesis it is the operator, which names no parameter.
+            ExpressionKind::Call { function, arguments } if function.key() == "not" && arguments.len() == 1 => {
+                text.push_str("NOT ");
+                arguments.iter().for_each(|argument| self.push_operand(text, &argument.value, true));
+            }
             ExpressionKind::Call { function, arguments } => {
                 text.push_str(&format!("{}(", self.names.spell_function(&function.text)));
                 for (index, argument) in arguments.iter().enumerate() {
