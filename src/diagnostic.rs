@@ -63,6 +63,7 @@ codes! {
     UnknownFormat = 105 Error "the format of the file is not known",
     BadOptions = 106 Error "options that do not go together",
     UnknownTopic = 107 Error "the manual has no such page",
+    OtherFormat = 108 Error "a file in another format than the command takes",
     // Syntax.
     UnexpectedToken = 201 Error "something else was expected here",
     UnexpectedCharacter = 202 Error "this character has no meaning here",
@@ -72,6 +73,8 @@ codes! {
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
     UnboundedLoop = 208 Error "a loop without a constant number of times",
+    NotSupported = 209 Error "something that Rung has not",
+    CannotConvert = 210 Error "something that the other format has not",
     BadXml = 221 Error "XML that cannot be read",
     BadElement = 222 Error "an element that lacks what it needs",
     // Names.
@@ -118,7 +121,6 @@ codes! {
     TooManyWarnings = 603 Warning "too many warnings",
     TooManyElements = 604 Error "arrays with too many elements",
     TooLargeInlined = 605 Error "too much is called within calls",
-    NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",
