@@ -25,5 +25,6 @@ mod support {
     pub(crate) mod random_stimuli;
     pub(crate) mod rig;
     pub(crate) mod script;
+    pub(crate) mod shrink;
     pub(crate) mod step_table;
 }

@@ -226,8 +226,16 @@ fn kind(oracle: &Oracle, call: &Call) -> String {
     match &call.callee {
         Callee::Standard(block, _) if call.power_input.is_none() => format!("{} with EN", block.name()),
         Callee::Standard(block, _) => block.name().to_owned(),
-        Callee::Unit(unit, _) if oracle.checked.unit(*unit).references.is_empty() => "own block".to_owned(),
-        Callee::Unit(..) => "own block with references".to_owned(),
+        Callee::Unit(unit, _) => {
+            let references = !oracle.checked.unit(*unit).references.is_empty();
+            let kind = match (references, call.power_input) {
+                (false, Some(_)) => "own block",
+                (false, None) => "own block with EN",
+                (true, Some(_)) => "own block with references",
+                (true, None) => "own block with references, with EN",
+            };
+            kind.to_owned()
+        }
         Callee::Function(Function::Standard(function), _) => format!("box {}", function.name()),
         Callee::Function(..) => "box that converts".to_owned(),
         Callee::UserFunction(_) => "box of an own function".to_owned(),
