@@ -75,6 +75,11 @@ impl Oracle<'_> {
                     },
                 }
             }
+        } else {
+            for (_, place) in call.outputs.iter().filter(|(output, _)| *output == Output::Eno) {
+                let target = self.locate(&walk.frame, place, &mut attempt);
+                self.put(&target, Value::bool(false));
+            }
         }
         self.activities.saw(walk.frame.id, call, &kind(self, call), pins.seen());
         let is_function = matches!(call.callee, Callee::Function(..) | Callee::UserFunction(_));
@@ -209,13 +214,11 @@ impl Oracle<'_> {
 
 /// Whether it is a box that divides integers, and divided by zero.
 fn divides_by_zero(call: &Call, pins: &Pins) -> bool {
-    use StandardFunction::{Divide, Modulo};
-    match &call.callee {
-        Callee::Function(Function::Standard(Divide | Modulo), ty) => {
-            ty.is_integer() && number(pins.inputs[1].read(*ty)) == 0
-        }
-        _ => false,
-    }
+    use StandardFunction::{Divide, DivideTime, Modulo};
+    let Callee::Function(Function::Standard(Divide | Modulo | DivideTime), _) = &call.callee else { return false };
+    let Storage::Value(divisor) = &pins.inputs[1] else { return false };
+    let divisor = divisor.get();
+    !divisor.ty().is_real() && number(divisor) == 0
 }
 
 /// What a coverage table calls a call.
