@@ -6,6 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use rung::check;
+use rung::diagnostic;
 use rung::draw::{self, TextOptions};
 use rung::elementary::Elementary;
 use rung::frontend;
@@ -168,12 +170,47 @@ fn every_standard_block_has_a_page_with_its_pins() {
     assert_eq!(missing, Vec::<&str>::new());
 }
 
+/// The pages beside those about elements.
+fn chapters() -> Vec<PathBuf> {
+    let paths = fs::read_dir(docs()).expect("the manual").map(|entry| entry.expect("an entry").path());
+    paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()
+}
+
+/// The programs of a page: its blocks of text that begin as a file does.
+fn programs(page: &str) -> Vec<&str> {
+    let blocks = page.split("```text\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let begins = |block: &&str| {
+        let word = block.split([' ', '\n']).next().unwrap_or_default();
+        ["program", "function", "function_block", "global", "type", "task"].contains(&word)
+    };
+    blocks.filter(begins).collect()
+}
+
+#[test]
+fn programs_in_the_chapters_are_sound() {
+    let chapters = chapters();
+    for name in ["units", "tasks", "arrays", "boxes", "statements", "native-text"] {
+        let path = chapters.iter().find(|path| path.file_stem().is_some_and(|stem| stem == name)).expect("a chapter");
+        let page = read(path);
+        let programs = programs(&page);
+        assert!(!programs.is_empty(), "{name} shows no program");
+        for program in programs {
+            let source = Source::new(name, program);
+            let parsed = frontend::parse(&source);
+            let (checked, mut problems) = check::check(&parsed.program);
+            problems.extend(parsed.diagnostics);
+            assert!(checked.is_some(), "{name}: {}", diagnostic::render(&source, &problems));
+        }
+    }
+}
+
 #[test]
 fn every_link_of_the_manual_leads_somewhere() {
     let mut files: Vec<PathBuf> = pages().keys().map(|stem| docs().join(format!("elements/{stem}.md"))).collect();
-    files.push(docs().join("README.md"));
+    files.extend(chapters());
     for file in files {
-        let page = read(&file);
+        // What stands in back quotes is no link.
+        let page: String = read(&file).split('`').step_by(2).collect();
         for target in page.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let path = file.parent().expect("a folder").join(target);
             assert!(path.exists(), "{} links to {target}", file.display());
@@ -231,7 +268,13 @@ fn help_knows_elements_by_what_is_drawn_and_written() {
         (&["coil", "(S)", "( )", "--(/)--", "(n)", "OTE"], "coils"),
         (&["parallel", ">x>", "[ ]", "Node"], "branches"),
         (&["condition", "assignment", ":="], "expressions"),
-        (&["EN", "block"], "blocks"),
+        (&["instance", "block"], "blocks"),
+        (&["EN", "function box"], "box"),
+        (&["IF", "for", "While"], "statements"),
+        (&["function_block", "inout"], "units"),
+        (&["index", "#fault", "struct"], "arrays"),
+        (&["priority"], "tasks"),
+        (&["overflow"], "bad input"),
     ] {
         for topic in topics {
             assert_eq!(help(topic), help(page), "{topic}");

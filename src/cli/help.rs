@@ -45,8 +45,10 @@ const PAGES: &[Page] = pages! {
         "( )" "()" "(/)" "(s)" "(r)" "(p)" "(n)";
     "branches": "branch" "branches" "parallel" "series" "node" "nodes" "bridge" "[ ]" "[]" "[|]" ">x>";
     "expressions": "expression" "expressions" "condition" "assignment" "compare" "{ }" "{}" ":=";
+    "../statements": "statement" "statements" "if" "case" "for" "while" "exit" "structured text";
+    "../boxes": "box" "boxes" "function box" "en" "eno";
     "../functions": "function" "functions";
-    "blocks": "block" "blocks" "function block" "en" "eno" "pin" "instance";
+    "blocks": "block" "blocks" "function block" "pin" "instance";
     "ton": "ton" "on-delay";
     "tof": "tof" "off-delay";
     "tp": "tp" "pulse timer";
@@ -64,6 +66,10 @@ const PAGES: &[Page] = pages! {
     "pid": "pid" "controller";
     "ramp": "ramp";
     "hysteresis": "hysteresis" "two-point switch";
+    "../units": "unit" "units" "function_block" "program" "inout" "in-out" "temp" "global" "inlining";
+    "../tasks": "task" "tasks" "interval" "priority" "round";
+    "../arrays": "array" "arrays" "struct" "structure" "enumeration" "index" "#fault" "fault";
+    "../bad-input": "bad input" "overflow" "division by zero" "nan";
     "../register-machine": "registers" "register machine" "ireg" "oreg" "hreg";
     "tt": "tt";
     "ts": "ts";
