@@ -11,6 +11,7 @@ use rung::diagnostic;
 use rung::draw::{self, TextOptions};
 use rung::elementary::Elementary;
 use rung::frontend;
+use rung::ladder::functions::{Function, ParameterType, StandardFunction};
 use rung::ladder::library::StandardBlock;
 use rung::source::Source;
 
@@ -59,6 +60,7 @@ fn made_anew(stem: &str, page: &str) -> String {
             ("example", "") => text.push_str(&fenced(&example)),
             ("pins", block) => text.push_str(&pins(block, &old)),
             ("variants", block) => text.push_str(&variants(block)),
+            ("functions", names) => text.push_str(&functions(names, &old)),
             _ => panic!("{stem}.md has a mark of no known kind: {line}"),
         }
         text.push_str("<!-- end -->\n");
@@ -94,6 +96,26 @@ fn pins(block: &str, old: &[&str]) -> String {
         let meaning = meaning.and_then(|rest| rest.trim_end_matches('|').rsplit('|').next()).unwrap_or("").trim();
         assert!(!meaning.is_empty(), "what is {} of {} for?", pin.name, block.name());
         table.push_str(&format!("{row} {meaning} |\n"));
+    }
+    table
+}
+
+/// The table of some functions with their parameters, from the library.
+fn functions(names: &str, old: &[&str]) -> String {
+    let mut table = String::from("| function | of | |\n|---|---|---|\n");
+    for name in names.split(' ') {
+        let Some(Function::Standard(function)) = Function::from_name(name) else {
+            panic!("there is no function {name}")
+        };
+        let mut parameters: Vec<&str> = function.parameters().iter().map(|parameter| parameter.name).collect();
+        parameters.extend(function.is_extensible().then_some("…"));
+        let generic = function.parameters().iter().any(|parameter| parameter.ty == ParameterType::Generic);
+        let class = if generic { function.class().describe() } else { "TIME" };
+        let start = format!("| `{name}(");
+        let meaning = old.iter().find(|line| line.starts_with(&start));
+        let meaning = meaning.and_then(|row| row.trim_end_matches('|').rsplit('|').next()).unwrap_or("").trim();
+        assert!(!meaning.is_empty(), "what does {name} compute?");
+        table.push_str(&format!("{start}{})` | {class} | {meaning} |\n", parameters.join(", ")));
     }
     table
 }
@@ -184,6 +206,18 @@ fn programs(page: &str) -> Vec<&str> {
         ["program", "function", "function_block", "global", "type", "task"].contains(&word)
     };
     blocks.filter(begins).collect()
+}
+
+#[test]
+fn every_standard_function_has_a_row_on_a_page_that_help_finds() {
+    let pages = pages();
+    for function in StandardFunction::ALL {
+        let row = format!("\n| `{}(", function.name());
+        let page = pages.iter().find(|(_, page)| page.contains(&row)).map(|(stem, _)| stem);
+        let stem = page.unwrap_or_else(|| panic!("no page has {}", function.name()));
+        // The words of the text that are functions too lead there as well.
+        assert_eq!(help(function.name()), help(stem), "{}", function.name());
+    }
 }
 
 #[test]

@@ -44,11 +44,20 @@ const PAGES: &[Page] = pages! {
     "coils": "coil" "coils" "negated coil" "set coil" "reset coil" "latch" "unlatch" "ote" "otl" "otu"
         "( )" "()" "(/)" "(s)" "(r)" "(p)" "(n)";
     "branches": "branch" "branches" "parallel" "series" "node" "nodes" "bridge" "[ ]" "[]" "[|]" ">x>";
+    "jumps": "jump" "jumps" "return" ">>";
     "expressions": "expression" "expressions" "condition" "assignment" "compare" "{ }" "{}" ":=";
     "../statements": "statement" "statements" "if" "case" "for" "while" "exit" "structured text";
     "../boxes": "box" "boxes" "function box" "en" "eno";
     "../functions": "function" "functions";
+    "arithmetic": "arithmetic" "add" "sub" "mul" "div" "mod" "abs" "move" "add_time" "sub_time" "mul_time" "div_time"
+        "multime" "divtime";
+    "mathematics": "mathematics" "sqrt" "ln" "log" "exp" "sin" "cos" "tan" "asin" "acos" "atan" "expt";
+    "bits": "bits" "bit string" "shl" "shr" "rol" "ror" "and" "or" "xor" "not";
+    "selection": "selection" "sel" "mux" "min" "max" "limit";
+    "comparison": "comparison" "gt" "ge" "eq" "le" "lt" "ne";
+    "conversion": "conversion" "convert" "trunc";
     "blocks": "block" "blocks" "function block" "pin" "instance";
+    "user_blocks": "user_blocks" "user block" "user function";
     "ton": "ton" "on-delay";
     "tof": "tof" "off-delay";
     "tp": "tp" "pulse timer";
@@ -84,11 +93,11 @@ const PAGES: &[Page] = pages! {
 
 impl Page {
     /// The page that a topic names, in any case; a block that is there for several types is named with or
-    /// without one, and a function by its name.
+    /// without one, and a conversion by its name.
     fn of(topic: &str) -> Option<&'static Self> {
         let named = |name: &str| PAGES.iter().find(|page| page.names.contains(&name));
         let topic = topic.to_lowercase();
-        let function = || Function::from_name(&topic).and_then(|_| named("function"));
+        let function = || Function::from_name(&topic).and_then(|_| named("conversion"));
         named(&topic).or_else(function).or_else(|| {
             let (block, ty) = topic.rsplit_once('_')?;
             Elementary::from_name(ty).and_then(|_| named(block))
