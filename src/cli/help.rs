@@ -1,6 +1,7 @@
 //! `rung help`: the command's help, a subcommand's, or an element's page of the manual.
 //!
-//! The pages are those of `docs/elements/`, embedded; what the terminal shows must never be said anywhere but there.
+//! The pages are those of the manual, `docs/elements/` and some chapters, embedded; what the terminal shows must never
+//! be said anywhere but there.
 
 mod markdown;
 
