@@ -82,6 +82,7 @@ fn stated(page: &str, name: &str) -> Size {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the manual tells how to see the figures")]
 fn the_longest_rungs_keep_within_the_figures_of_the_manual() {
     let page = std::fs::read_to_string(docs().join("machine-code.md")).expect("the page about machine code");
     for (name, bound) in BOUNDS {
