@@ -63,6 +63,7 @@ codes! {
     UnknownFormat = 105 Error "the format of the file is not known",
     BadOptions = 106 Error "options that do not go together",
     UnknownTopic = 107 Error "the manual has no such page",
+    OtherFormat = 108 Error "a file in another format than the command takes",
     // Syntax.
     UnexpectedToken = 201 Error "something else was expected here",
     UnexpectedCharacter = 202 Error "this character has no meaning here",
@@ -72,6 +73,10 @@ codes! {
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
     UnboundedLoop = 208 Error "a loop without a constant number of times",
+    NotSupported = 209 Error "something that Rung has not",
+    CannotConvert = 210 Error "something that the other format has not",
+    BadXml = 221 Error "XML that cannot be read",
+    BadElement = 222 Error "an element that lacks what it needs",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
@@ -105,6 +110,11 @@ codes! {
     NoMemoryHere = 512 Error "something that remembers, in a function",
     BadResource = 513 Error "a task, program instance or resource that cannot be",
     MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
+    DanglingConnection = 521 Error "a wire from an element that there is not",
+    DuplicateId = 522 Error "two elements of one id",
+    PowerCycle = 523 Error "power that runs in a circle",
+    NotConnected = 524 Error "an element that no wire reaches",
+    NeverRuns = 525 Warning "a program that no task runs",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",

@@ -30,6 +30,8 @@ pub(super) struct Direct {
     known: HashMap<Extent, ()>,
     /// For each class of registers, how many its uses need, and the first use.
     registers: [Option<(i64, Span)>; 3],
+    /// How deep the rungs nest that were seen since this was 0.
+    deepest: usize,
 }
 
 /// How deep circuits and expressions may nest, counted together: more than the native text's limits on circuits and on
@@ -46,14 +48,18 @@ fn deeper(depth: usize, span: Span) -> Result<usize, TooDeep> {
 impl Checker<'_> {
     /// Declares the instances that the rungs of a unit declare by use, and notes the addresses and registers, and the rungs that are
     /// nested too deeply to be checked.
-    pub(super) fn collect_instances(&mut self, unit: usize) {
+    ///
+    /// Gives how deep they nest.
+    pub(super) fn collect_instances(&mut self, unit: usize) -> usize {
         let program = self.program;
+        self.direct.deepest = 0;
         for (index, rung) in program.units[unit].rungs.iter().enumerate() {
             if let Err(problem) = self.collect_circuit(&rung.circuit, 0) {
                 self.report_depth(&problem);
                 self.too_deep.insert((unit, index));
             }
         }
+        self.direct.deepest
     }
 
     /// Declares, as global variables, the addresses and registers that rungs use and nothing declares.
@@ -99,6 +105,7 @@ impl Checker<'_> {
 
     fn collect_circuit(&mut self, circuit: &Circuit, depth: usize) -> Result<(), TooDeep> {
         let depth = deeper(depth, circuit.span)?;
+        self.direct.deepest = self.direct.deepest.max(depth);
         for element in circuit.branches.iter().flat_map(|branch| &branch.elements) {
             match &element.kind {
                 ElementKind::Contact { operand, .. } => self.collect_expression(operand, depth)?,
@@ -120,6 +127,7 @@ impl Checker<'_> {
     fn collect_statements(&mut self, statements: &[Statement], depth: usize) -> Result<(), TooDeep> {
         for statement in statements {
             let depth = deeper(depth, statement.span)?;
+            self.direct.deepest = self.direct.deepest.max(depth);
             match &statement.kind {
                 StatementKind::Assignment { target, value } => {
                     self.collect_reference(target, depth)?;
@@ -183,6 +191,7 @@ impl Checker<'_> {
 
     fn collect_expression(&mut self, expression: &Expression, depth: usize) -> Result<(), TooDeep> {
         let depth = deeper(depth, expression.span)?;
+        self.direct.deepest = self.direct.deepest.max(depth);
         match &expression.kind {
             ExpressionKind::Literal(_) => {}
             ExpressionKind::Read(reference) => self.collect_reference(reference, depth)?,

@@ -37,8 +37,8 @@ impl Checker<'_> {
             self.scope.enter(Some(UnitId(index)));
             let start = self.scope.next_id();
             let ids = self.declare_unit(unit);
-            self.collect_instances(index as usize);
-            self.units.push(Signature::new(start.0..self.scope.next_id().0));
+            let depth = self.collect_instances(index as usize);
+            self.units.push(Signature::new(start.0..self.scope.next_id().0, depth));
             units.push(ids);
         }
         for (index, unit) in (0..).zip(&program.units) {

@@ -429,7 +429,7 @@ pub enum Element {
 ///
 /// It is **enabled** while both EN, where that is wired, and the power on the left are TRUE; but the power on the left does
 /// not count where it feeds an input, and there is none in a statement. What is not enabled does not run: an instance keeps its
-/// outputs and memories, and no wired output is written.
+/// outputs and memories, and of the wired outputs only ENO is written.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Call {
     /// What is called.
@@ -468,8 +468,8 @@ pub enum Callee {
 pub enum Output {
     /// By its place among the outputs.
     Pin(usize),
-    /// Whether the call was enabled and did not fail: no index out of range at a pin, and no integer divided by zero by
-    /// DIV or MOD.
+    /// Whether the call was enabled and did not fail: no index out of range at a pin, and no integer or TIME divided by an
+    /// integer zero, or by no time, by DIV or MOD.
     Eno,
 }
 
@@ -532,6 +532,9 @@ pub enum ExpressionKind {
     },
 }
 
+/// Ranges of values, both ends included.
+type Labels = Vec<(Value, Value)>;
+
 /// One statement, which is executed where it stands.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Statement {
@@ -563,7 +566,7 @@ pub enum Statement {
         /// An integer, computed once.
         selector: Expression,
         /// In order: ranges, both ends included, and what they are for.
-        branches: Vec<(Vec<(Value, Value)>, Vec<Statement>)>,
+        branches: Vec<(Labels, Vec<Statement>)>,
         /// What is executed if none matches.
         otherwise: Vec<Statement>,
     },

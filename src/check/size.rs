@@ -7,6 +7,7 @@ use std::collections::HashSet;
 
 use super::model::{ProgramInstance, Type, UnitId, VariableId};
 use super::type_table::MOST_ELEMENTS;
+use super::unit::UnitCall;
 use super::{Checker, MOST_INLINED};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::library::StandardBlock;
@@ -17,6 +18,13 @@ use crate::source::Span;
 const MACHINE: [(&str, &[&str]); 3] =
     [("timers", &["TT", "TS", "UC", "DC"]), ("drums", &["DR"]), ("shifts", &["SHIFTL", "SHIFTR"])];
 
+/// How deep units may nest, each with the circuits and expressions in it and a call with [`CALL_DEPTH`]: what is written out is
+/// walked as deep as it nests.
+const MOST_NESTED: usize = 512;
+
+/// What a call counts for.
+const CALL_DEPTH: usize = 4;
+
 /// What something of a type, or a unit, has.
 #[derive(Clone, Copy, Default)]
 struct Size {
@@ -26,12 +34,18 @@ struct Size {
     machine: [u64; 3],
     /// Of a unit: the elements of one call of it, with all that it calls.
     code: u64,
+    /// Of a unit: how deep it nests, with all that it calls.
+    depth: usize,
 }
 
 impl Size {
     fn of_block(block: StandardBlock) -> Self {
         let values = (block.inputs().len() + block.outputs().len()) as u64;
-        Self { values, machine: MACHINE.map(|(_, blocks)| u64::from(blocks.contains(&block.name()))), code: 0 }
+        Self {
+            values,
+            machine: MACHINE.map(|(_, blocks)| u64::from(blocks.contains(&block.name()))),
+            ..Self::default()
+        }
     }
 
     /// With so many of another, as far as memory goes.
@@ -67,6 +81,7 @@ impl Checker<'_> {
             let sizes: Vec<Size> = walk.sizes.into_iter().map(Option::unwrap_or_default).collect();
             self.check_storage(programs, &sizes);
             self.check_code(programs, &sizes);
+            self.check_call_depth(programs, &sizes);
         }
     }
 
@@ -152,6 +167,8 @@ impl Checker<'_> {
         let is_function = matches!(self.program.units[node].kind, UnitKind::Function { .. });
         let own = unit.weight.saturating_add(if is_function { size.values } else { 0 });
         size.code = calls.fold(own, u64::saturating_add);
+        let nested = |call: &UnitCall| sizes[call.callee.index()].map_or(0, |size| size.depth + CALL_DEPTH);
+        size.depth = unit.depth + unit.calls.iter().map(nested).max().unwrap_or(0);
         size
     }
 
@@ -233,6 +250,21 @@ impl Checker<'_> {
                 self.report.push(problem.hint(format!("`registers({name} := {count})` gives it more")));
             }
         }
+    }
+
+    /// Reports programs whose calls nest too deeply to be written out.
+    fn check_call_depth(&mut self, programs: &[ProgramInstance], sizes: &[Size]) {
+        let too_deep = |unit: &UnitId| sizes[unit.index()].depth > MOST_NESTED;
+        let Some(unit) = programs.iter().map(|instance| instance.unit).find(too_deep) else { return };
+        let calls = &self.units[unit.index()].calls;
+        let Some(call) = calls.iter().max_by_key(|call| sizes[call.callee.index()].depth) else { return };
+        let name = &self.program.units[call.callee.index()].name.text;
+        let depth = sizes[unit.index()].depth;
+        let message =
+            format!("with what `{name}` calls in turn, this is nested {depth} deep, and the most is {MOST_NESTED}");
+        let problem = Diagnostic::new(Code::TooDeep, call.span, message);
+        self.report
+            .push(problem.hint(format!("each call counts for {CALL_DEPTH}, beside the circuits that it stands in")));
     }
 
     /// Reports calls, loops and program instances that come to too much once they are written out.

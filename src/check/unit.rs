@@ -20,6 +20,8 @@ pub(super) struct Signature {
     pub(super) inputs: Vec<VariableId>,
     pub(super) outputs: Vec<VariableId>,
     pub(super) references: Vec<VariableId>,
+    /// How deep its rungs nest.
+    pub(super) depth: usize,
     /// The calls of units that its rungs make that run.
     pub(super) calls: Vec<UnitCall>,
     /// Elements, statements and operators of those rungs, as often as FORs repeat them.
@@ -41,12 +43,13 @@ pub(super) struct UnitCall {
 }
 
 impl Signature {
-    pub(super) fn new(variables: Range<u32>) -> Self {
+    pub(super) fn new(variables: Range<u32>, depth: usize) -> Self {
         Self {
             variables,
             inputs: Vec::new(),
             outputs: Vec::new(),
             references: Vec::new(),
+            depth,
             calls: Vec::new(),
             weight: 0,
             drawn: 0,

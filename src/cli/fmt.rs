@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use super::{Failure, load, print, report, write_whole};
-use crate::diagnostic::{self, any_error};
+use crate::diagnostic::{self, Code, Diagnostic, any_error};
 use crate::frontend::native;
+use crate::ladder::Origin;
+use crate::source::Span;
 
 /// Writes programs in the canonical form of the native text
 #[derive(Debug, clap::Args)]
@@ -29,6 +31,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Err(other) => return Err(other),
         };
+        if loaded.program.origin == Origin::Imported {
+            let problem = Diagnostic::new(Code::OtherFormat, Span::default(), "this file is not in native text")
+                .hint("`rung convert` writes it as native text, to a file of its own");
+            report(&diagnostic::render(&loaded.source, &[problem]));
+            failed = true;
+            continue;
+        }
         if any_error(&loaded.diagnostics) {
             report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
             failed = true;

@@ -262,6 +262,11 @@ impl StandardFunction {
         }
     }
 
+    /// Whether it divides its first operand by its second.
+    pub const fn divides(self) -> bool {
+        matches!(self, Self::Divide | Self::Modulo | Self::DivideTime)
+    }
+
     /// The parameter at a place among the arguments of a call without names.
     pub fn parameter(self, place: usize) -> Option<Parameter> {
         let parameters = self.parameters();

@@ -71,8 +71,8 @@ macro_rules! takes {
     };
 }
 
-// A pin is its name and type; `= 1` is its default, `in 0 to 9` the range of its constants; `as constant` or `as reference` what else than a value it takes.
-// Behind a semicolon stand pins that differ in nothing but the number behind their name.
+// A pin is its name and type; `= 1` is its default, `in 0 to 9` the range of its constants, `as constant` or `as reference`
+// what else than a value it takes. Behind a semicolon stand pins that differ in nothing but the number behind their name.
 macro_rules! pins {
     ((
         $($name:literal: $ty:ident $(= $initial:literal)? $(in $least:literal to $greatest:literal)? $(as $takes:ident)?),*
@@ -179,11 +179,13 @@ blocks! {
     Dc "DC": ("COUNT": Bool, "ENABLE": Bool = 1, "PRESET": Word in 0 to 9999) => ("Q": Bool, "VALUE": Word);
     /// Drum: an up counter with taps.
     Dr "DR":
-        ("STEP": Bool, "ENABLE": Bool = 1, "PRESET": Word = 2047 in 0 to 2047; "TAP" 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16: Word = 65535)
+        ("STEP": Bool, "ENABLE": Bool = 1, "PRESET": Word = 2047 in 0 to 2047;
+            "TAP" 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16: Word = 65535)
         => ("Q": Bool, "VALUE": Word; "Q" 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16: Bool = 0);
     /// Shift register, towards the highest bit of the highest register or towards the lowest bit of the lowest.
     Shiftl "SHIFTL", Shiftr "SHIFTR":
-        ("SHIFT": Bool, "DATA": Bool, "ENABLE": Bool = 1, "COUNT": Usint = 1 in 1 to 15, "REGISTER": Word as reference, "LENGTH": Usint in 1 to 32 as constant)
+        ("SHIFT": Bool, "DATA": Bool, "ENABLE": Bool = 1, "COUNT": Usint = 1 in 1 to 15,
+            "REGISTER": Word as reference, "LENGTH": Usint in 1 to 32 as constant)
         => ("Q": Bool);
     /// Sets, or clears, a bit of a register.
     Bs "BS", Bc "BC": ("IN": Bool, "REGISTER": Word as reference, "BIT": Usint in 0 to 15) => ("Q": Bool);

@@ -13,7 +13,7 @@ use crate::check::{
 };
 use crate::elementary::{Elementary, Value};
 use crate::ladder::VariableClass;
-use crate::ladder::functions::{Function, StandardFunction};
+use crate::ladder::functions::Function;
 use crate::ladder::library::StandardBlock;
 use crate::logic::{Compare, ValueId};
 
@@ -62,7 +62,7 @@ impl<'a> Lowering<'a> {
             match (output, &outputs) {
                 (Output::Eno, _) => {
                     let eno = eno.unwrap_or_else(|| self.logic.bool(true));
-                    self.store(target.spot(), eno, enabled);
+                    self.store(target.spot(), eno, None);
                 }
                 (Output::Pin(pin), Outputs::Parts(parts)) => match parts[*pin].value() {
                     Some(spot) => {
@@ -187,8 +187,8 @@ impl<'a> Lowering<'a> {
         values.sort_by_key(|(pin, _)| *pin);
         let values: Vec<ValueId> = values.into_iter().map(|(_, value)| value).collect();
         let divides = match function {
-            Function::Standard(StandardFunction::Divide | StandardFunction::Modulo) if ty.is_integer() => {
-                let zero = self.logic.constant(Value::default_of(ty));
+            Function::Standard(function) if function.divides() && !self.logic.ty(values[1]).is_real() => {
+                let zero = self.logic.constant(Value::default_of(self.logic.ty(values[1])));
                 Some(self.logic.compare(Compare::NotEqual, values[1], zero))
             }
             _ => None,

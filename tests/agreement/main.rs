@@ -7,6 +7,7 @@ mod examples;
 mod faults;
 mod guards;
 mod jumps;
+mod passes;
 mod random;
 mod register_machine;
 mod statements;
@@ -25,5 +26,6 @@ mod support {
     pub(crate) mod random_stimuli;
     pub(crate) mod rig;
     pub(crate) mod script;
+    pub(crate) mod shrink;
     pub(crate) mod step_table;
 }

@@ -6,8 +6,8 @@ use std::fmt;
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
 use rung::ladder::{
-    BlockCall, Branch, Circuit, ElementKind, Expression, ExpressionKind, Program, Reference, Root, Statement,
-    StatementKind, Step, TypeKind, UnitKind, Wire,
+    BlockCall, Branch, CaseLabel, Circuit, ElementKind, Expression, ExpressionKind, Literal, Program, Reference, Root,
+    Statement, StatementKind, Step, TypeKind, UnitKind, Wire,
 };
 
 use super::oracle::Activity;
@@ -55,8 +55,12 @@ impl Coverage {
             });
         }
         program.instances.iter().for_each(|_| self.saw("named instance of a program"));
+        program.tasks.iter().for_each(|_| self.saw("task"));
+        program.globals.iter().for_each(|_| self.saw("global"));
         for variable in program.globals.iter().chain(program.units.iter().flat_map(|unit| &unit.variables)) {
             let array = variable.ty.as_ref().is_some_and(|ty| !ty.dimensions.is_empty());
+            let many = variable.ty.as_ref().is_some_and(|ty| ty.dimensions.len() > 1);
+            self.saw_if(many, "declared array of many dimensions");
             let ty = variable.ty.as_ref().map_or(Elementary::Bool.name(), |ty| &ty.name.text);
             let ty = if Elementary::from_name(ty).is_some() || StandardBlock::from_name(ty).is_some() {
                 ty
@@ -66,6 +70,7 @@ impl Coverage {
             self.saw(&format!("declared {}{ty}", if array { "array of " } else { "" }));
             self.saw(&format!("declared {:?}", variable.class));
             self.saw_if(variable.initial.is_some(), "declared with an initial value");
+            variable.initial.iter().for_each(|initial| self.add_expression(initial));
             self.saw_if(variable.retain, "declared retain");
             self.saw_if(variable.address.is_some(), "declared at an address");
         }
@@ -75,10 +80,26 @@ impl Coverage {
         }
     }
 
+    /// Adds what another table counted.
+    pub(crate) fn add(&mut self, other: Self) {
+        for (kind, more) in other.counts {
+            let count = self.counts.entry(kind).or_default();
+            count.occurred += more.occurred;
+            count.alive += more.alive;
+            count.toggles += more.toggles;
+        }
+    }
+
     /// The kinds that should occur and change but did not.
     pub(crate) fn missing<'a>(&self, kinds: &[&'a str]) -> Vec<&'a str> {
         let missing = |kind: &&&str| self.counts.get(**kind).is_none_or(|count| count.toggles == 0);
         kinds.iter().filter(missing).copied().collect()
+    }
+
+    /// Those of what programs are made of that never occurred.
+    pub(crate) fn never_drawn<'a>(&self, kinds: &'a [String]) -> Vec<&'a str> {
+        let missing = |kind: &&String| !self.counts.contains_key(&format!("- {kind}"));
+        kinds.iter().filter(missing).map(String::as_str).collect()
     }
 
     fn saw(&mut self, kind: &str) {
@@ -152,10 +173,15 @@ impl Coverage {
                 }
                 StatementKind::Case { selector, branches, otherwise } => {
                     self.add_expression(selector);
-                    branches.iter().for_each(|branch| self.add_statements(&branch.body));
+                    for branch in branches {
+                        let is_range = |label: &CaseLabel| label.last.is_some();
+                        self.saw_if(branch.labels.iter().any(is_range), "CASE of a range");
+                        self.add_statements(&branch.body);
+                    }
                     self.add_statements(otherwise);
                 }
-                StatementKind::For { variable, body, .. } => {
+                StatementKind::For { variable, body, step, .. } => {
+                    self.saw_if(step.is_some(), "FOR by a step");
                     self.add_reference(variable);
                     self.add_statements(body);
                 }
@@ -166,6 +192,7 @@ impl Coverage {
 
     fn add_expression(&mut self, expression: &Expression) {
         match &expression.kind {
+            ExpressionKind::Literal(Literal::Enumerated { .. }) => self.saw("operand of an enumeration"),
             ExpressionKind::Literal(_) => self.saw("operand literal"),
             ExpressionKind::Read(reference) => self.add_reference(reference),
             ExpressionKind::Unary(operator, operand) => {
@@ -193,6 +220,9 @@ impl Coverage {
                 Step::Bit(..) => "operand bit",
                 Step::Index(..) => "operand index",
             });
+            if let Step::Index(indices, _) = step {
+                indices.iter().for_each(|index| self.add_expression(index));
+            }
         }
     }
 }

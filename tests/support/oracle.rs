@@ -57,7 +57,9 @@ pub(crate) struct Oracle<'a> {
     memories: HashMap<(FrameId, *const Element), bool>,
     activities: Activities,
     names: Vec<String>,
-    watched: HashMap<String, (Storage, Elementary)>,
+    /// What is behind each name.
+    watched: Vec<(Storage, Elementary)>,
+    places: HashMap<String, usize>,
 }
 
 impl<'a> Oracle<'a> {
@@ -77,7 +79,8 @@ impl<'a> Oracle<'a> {
             memories: HashMap::new(),
             activities: Activities::default(),
             names: Vec::new(),
-            watched: HashMap::new(),
+            watched: Vec::new(),
+            places: HashMap::new(),
         };
         oracle.globals = oracle.frame(checked.globals(), &[]);
         for id in checked.globals() {
@@ -106,7 +109,8 @@ impl<'a> Oracle<'a> {
         let checked = self.checked;
         match ty {
             Type::Elementary(ty) => {
-                self.watched.insert(key(&name), (storage.clone(), ty));
+                self.places.insert(key(&name), self.names.len());
+                self.watched.push((storage.clone(), ty));
                 self.names.push(name);
             }
             Type::Array(array) => {
@@ -157,6 +161,11 @@ impl<'a> Oracle<'a> {
         storage.read(*ty)
     }
 
+    /// The values of [`Oracle::names`], in their order.
+    pub(crate) fn values(&self) -> impl Iterator<Item = Value> {
+        self.watched.iter().map(|(storage, ty)| storage.read(*ty))
+    }
+
     /// Gives a name a value, as a copy-in does.
     ///
     /// # Panics
@@ -194,7 +203,8 @@ impl<'a> Oracle<'a> {
     }
 
     fn watched(&self, name: &str) -> &(Storage, Elementary) {
-        self.watched.get(&key(name)).unwrap_or_else(|| panic!("no variable is named {name}"))
+        let place = self.places.get(&key(name)).unwrap_or_else(|| panic!("no variable is named {name}"));
+        &self.watched[*place]
     }
 
     /// Runs one round at `now`, nanoseconds since the controller started: every task that is due, in their order.

@@ -1,44 +1,57 @@
 //! Random programs that check without an error, small and entangled, so that things happen in them.
 //!
-//! A seed gives one program. Every element, block, type and way to wire a pin occurs; presets are small and
+//! A seed gives one program. Every element, statement, block, type and way to wire a pin occurs; presets are small and
 //! variables few, so that timers expire and counters fill while stimuli (see `random_stimuli`) come in.
+//!
+//! `unit` draws units one after the other, `declaration` and `shape` what they declare, `circuit`, `call` and
+//! `statement` what their rungs hold, `expression` and `function` values; `jump` puts jumps in at last.
 
+mod call;
 mod circuit;
 mod declaration;
 mod expression;
 mod function;
+mod function_box;
 mod jump;
+mod shape;
+mod statement;
+mod unit;
 
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
-use rung::ladder::{Program, Reference, Root, Rung, VariableClass};
+use rung::ladder::{Program, Reference, Root, Rung, Unit, UnitKind, VariableClass};
 
 use super::dice::Dice;
 use super::drawing;
+use shape::{Shape, Way};
 
 /// The program of a seed.
 pub(crate) fn random_program(seed: u64) -> Program {
+    let program = Program { units: Vec::new(), ..drawing::program("random") };
     let mut generator = Generator {
         dice: Dice::new(seed, 1),
-        program: drawing::program("random"),
+        unit: unit::empty(),
+        program,
+        value_types: Vec::new(),
+        named_arrays: Vec::new(),
+        structures: Vec::new(),
+        functions: Vec::new(),
+        blocks: Vec::new(),
         scope: Vec::new(),
+        wholes: Vec::new(),
         instances: Vec::new(),
         pending: Vec::new(),
         nodes: 0,
         fed_nodes: Vec::new(),
         in_pin: false,
+        in_function: false,
+        in_index: false,
+        fixed_indices: false,
+        addresses: false,
+        weight: 0,
+        turns: 1,
     };
-    generator.declare();
-    let rungs = generator.dice.between(1, 25);
-    for place in 0..rungs {
-        generator.rung(place);
-    }
-    // Every instance is called, or its members could not be named.
-    while !generator.pending.is_empty() {
-        let place = generator.program.units[0].rungs.len();
-        generator.rung(place);
-    }
-    generator.add_jumps();
+    generator.draw();
     generator.program
 }
 
@@ -46,7 +59,17 @@ pub(crate) fn random_program(seed: u64) -> Program {
 #[derive(Clone)]
 struct Entry {
     root: Root,
+    way: Vec<Way>,
     ty: Elementary,
+    class: VariableClass,
+}
+
+/// An array or structure that can be named.
+#[derive(Clone)]
+struct Whole {
+    root: Root,
+    way: Vec<Way>,
+    shape: Shape,
     class: VariableClass,
 }
 
@@ -59,21 +82,41 @@ enum Purpose {
     Write,
 }
 
-impl Entry {
-    fn is_for(&self, purpose: Purpose) -> bool {
-        match purpose {
-            Purpose::Read => true,
-            Purpose::ReadVariable => self.class != VariableClass::Constant,
-            Purpose::Write => matches!(self.class, VariableClass::Output | VariableClass::Memory),
+impl Purpose {
+    fn allows(self, class: VariableClass) -> bool {
+        match self {
+            Self::Read => true,
+            Self::ReadVariable => class != VariableClass::Constant,
+            Self::Write => !matches!(class, VariableClass::Constant | VariableClass::Input),
         }
     }
+}
+
+/// A function block or function of the program's own, as its callers see it.
+#[derive(Clone)]
+struct Signature {
+    name: String,
+    result: Option<Elementary>,
+    inputs: Vec<(String, Elementary)>,
+    references: Vec<(String, Shape)>,
+    outputs: Vec<(String, Shape)>,
+    /// About how much a call comes to.
+    weight: usize,
+}
+
+/// What an instance is of.
+#[derive(Clone)]
+enum Kind {
+    Standard(StandardBlock),
+    Own(Signature),
 }
 
 /// A block instance.
 #[derive(Clone)]
 struct Instance {
-    name: String,
-    block: StandardBlock,
+    /// With constant indices, if it is in an array.
+    reference: Reference,
+    kind: Kind,
     /// Whether a declaration gives its type, so that the call need not.
     declared: bool,
 }
@@ -81,7 +124,16 @@ struct Instance {
 struct Generator {
     dice: Dice,
     program: Program,
+    /// What is being drawn.
+    unit: Unit,
+    /// Types with other names: enumerations, too.
+    value_types: Vec<(Elementary, String)>,
+    named_arrays: Vec<(Shape, String)>,
+    structures: Vec<Shape>,
+    functions: Vec<Signature>,
+    blocks: Vec<Signature>,
     scope: Vec<Entry>,
+    wholes: Vec<Whole>,
     instances: Vec<Instance>,
     /// The instances that no call stands for yet.
     pending: Vec<Instance>,
@@ -91,6 +143,17 @@ struct Generator {
     fed_nodes: Vec<String>,
     /// Whether this is a circuit at a pin, which cannot start at a node of the rung around it.
     in_pin: bool,
+    /// Whether this is a function, which remembers nothing.
+    in_function: bool,
+    in_index: bool,
+    /// Whether indices have to be constant.
+    fixed_indices: bool,
+    /// Whether variables stand at addresses.
+    addresses: bool,
+    /// About how much the calls of own units and functions in this unit come to.
+    weight: usize,
+    /// How often the loops around repeat what is drawn.
+    turns: usize,
 }
 
 impl Generator {
@@ -105,25 +168,37 @@ impl Generator {
             enabled: !self.dice.percent(4),
             ..drawing::rung(elements)
         };
-        self.program.units[0].rungs.push(rung);
+        self.unit.rungs.push(rung);
     }
 
-    /// A reference to something of a type, if there is any. Names come in another case now and then.
+    /// Whether another call of something is not too much to be written out; it is noted.
+    fn affords(&mut self, called: &Signature) -> bool {
+        let weight = self.weight + called.weight * self.turns;
+        let affordable = weight < if matches!(self.unit.kind, UnitKind::Program { .. }) { 300 } else { 100 };
+        if affordable {
+            self.weight = weight;
+        }
+        affordable
+    }
+
+    /// A reference to something of a type, if there is any.
     fn place(&mut self, ty: Elementary, purpose: Purpose) -> Option<Reference> {
-        let fits = |entry: &&Entry| entry.ty == ty && entry.is_for(purpose);
+        let fits = |entry: &&Entry| entry.ty == ty && purpose.allows(entry.class);
         let fitting: Vec<Entry> = self.scope.iter().filter(fits).cloned().collect();
         if fitting.is_empty() {
             return None;
         }
         let entry = self.dice.pick(&fitting).clone();
-        Some(self.refer(&entry))
+        Some(self.refer(&entry.root, &entry.way))
     }
 
-    fn refer(&mut self, entry: &Entry) -> Reference {
-        let root = match &entry.root {
-            Root::Name(name) if self.dice.percent(10) => Root::Name(drawing::name(&name.text.to_uppercase())),
-            root => root.clone(),
-        };
-        Reference { root, steps: Vec::new(), span: drawing::NOWHERE }
+    /// A reference to an array or structure that a condition holds for, if there is any.
+    fn whole(&mut self, fits: impl Fn(&Whole) -> bool) -> Option<(Reference, Shape)> {
+        let fitting: Vec<Whole> = self.wholes.iter().filter(|whole| fits(whole)).cloned().collect();
+        if fitting.is_empty() {
+            return None;
+        }
+        let whole = self.dice.pick(&fitting).clone();
+        Some((self.refer(&whole.root, &whole.way), whole.shape))
     }
 }

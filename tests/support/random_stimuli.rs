@@ -1,10 +1,11 @@
 //! Random times and inputs for a program, such that timers run out and edges come.
 
-use rung::check::{Checked, Type};
+use rung::check::{Checked, VariableId};
 use rung::elementary::{Elementary, Value};
 use rung::ladder::VariableClass;
 
 use super::dice::Dice;
+use super::oracle::Oracle;
 
 const MILLISECOND: i64 = 1_000_000;
 
@@ -27,14 +28,17 @@ impl Stimuli {
     /// The stimuli of a seed for a program.
     pub(crate) fn new(seed: u64, checked: &Checked) -> Self {
         let mut dice = Dice::new(seed, 2);
-        let mut inputs = Vec::new();
-        for variable in checked.variables().iter().filter(|variable| variable.class == VariableClass::Input) {
-            if let Type::Elementary(ty) = variable.ty {
-                // Some flicker, some stay long enough for a timer.
-                let percent = *dice.pick(&[50, 20, 8, 3]);
-                inputs.push(Input { name: variable.name.clone(), ty, percent, value: variable.initial.value(ty) });
-            }
-        }
+        let oracle = Oracle::new(checked);
+        let inputs = inputs(checked).into_iter().flat_map(|input| {
+            let parts = oracle.names().iter().filter(move |name| is_in(name, &input));
+            parts.map(|name| (name.clone(), oracle.get(name)))
+        });
+        let inputs = inputs.map(|(name, value)| {
+            // Some flicker, some stay long enough for a timer.
+            let percent = *dice.pick(&[50, 20, 8, 3]);
+            Input { name, ty: value.ty(), percent, value }
+        });
+        let inputs = inputs.collect();
         // A controller that has been running for ages must still add times right.
         let now = *dice.pick(&[0, 0, 1, 3_600_000 * MILLISECOND, 1 << 62]);
         Self { dice, now, inputs }
@@ -66,6 +70,28 @@ impl Stimuli {
         }
         (now, changes)
     }
+}
+
+/// The names of the variables that are inputs, global ones first.
+fn inputs(checked: &Checked) -> Vec<String> {
+    let is_input = |id: &VariableId| checked.variable(*id).class == VariableClass::Input;
+    let mut names: Vec<String> =
+        checked.globals().filter(is_input).map(|id| checked.variable(id).name.clone()).collect();
+    for program in checked.programs() {
+        for id in checked.unit(program.unit).variables().filter(is_input) {
+            let name = &checked.variable(id).name;
+            names.push(match checked.programs().len() {
+                1 => name.clone(),
+                _ => format!("{}.{name}", program.name),
+            });
+        }
+    }
+    names
+}
+
+/// Whether something observed is a variable or a part of it.
+fn is_in(name: &str, variable: &str) -> bool {
+    name.strip_prefix(variable).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// The next value of an input: mostly small, sometimes any.

@@ -97,20 +97,11 @@ impl<'a> Rig<'a> {
         for engine in &mut self.engines {
             engine.scan.scan(&mut engine.image, now);
         }
-        for observed in self.layout.observed() {
+        for (observed, expected) in self.layout.observed().iter().zip(self.oracle.values()) {
             let slot = self.layout.slot(observed.slot);
-            let expected = self.oracle.get(&observed.name);
             // Two variables at one address may see one slot as two types.
-            if self
-                .engines
-                .iter()
-                .any(|engine| slot.read(&engine.image).bits() != Value::from_bits(slot.ty, expected.bits()).bits())
-            {
-                let mut values = format!("{expected:?} evaluator\n");
-                for engine in &self.engines {
-                    let _ = writeln!(values, "{:?} {}", slot.read(&engine.image), engine.name);
-                }
-                return Err(Difference { name: observed.name.clone(), values });
+            if slot.read(&self.engines[0].image).bits() != Value::from_bits(slot.ty, expected.bits()).bits() {
+                return Err(self.difference(&observed.name, expected));
             }
         }
         let first = &self.engines[0];
@@ -120,15 +111,31 @@ impl<'a> Rig<'a> {
             let values = format!("{} evaluator\n{fault} {}\n", self.oracle.fault(), first.name);
             return Err(Difference { name: "#fault".to_owned(), values });
         }
-        match self.engines.iter().find(|engine| engine.image != first.image) {
-            None => Ok(()),
-            Some(engine) => {
-                let slots = self.layout.slots().iter();
-                let differing = slots.filter(|slot| slot.read(&engine.image) != slot.read(&first.image));
-                let names: Vec<&str> = differing.map(|slot| slot.name.as_str()).collect();
-                let values = format!("{} and {} differ in the image at {names:?}\n", first.name, engine.name);
-                Err(Difference { name: String::new(), values })
-            }
+        let Some(engine) = self.engines.iter().find(|engine| engine.image != first.image) else { return Ok(()) };
+        let slots = self.layout.slots().iter();
+        let differing: Vec<&str> = slots
+            .filter(|slot| slot.read(&engine.image) != slot.read(&first.image))
+            .map(|slot| slot.name.as_str())
+            .collect();
+        let visible = self.layout.observed().iter().zip(self.oracle.values());
+        let mut visible = visible.filter(|(observed, _)| {
+            let slot = self.layout.slot(observed.slot);
+            slot.read(&engine.image).bits() != slot.read(&first.image).bits()
+        });
+        if let Some((observed, expected)) = visible.next() {
+            return Err(self.difference(&observed.name, expected));
         }
+        let values = format!("{} and {} differ in the image at {differing:?}\n", first.name, engine.name);
+        Err(Difference { name: String::new(), values })
+    }
+
+    /// What each says to a variable that is not the same everywhere.
+    fn difference(&self, name: &str, expected: Value) -> Difference {
+        let mut values = format!("{expected:?} evaluator\n");
+        let observed = self.layout.observed().iter().find(|observed| observed.name == name);
+        for (engine, observed) in self.engines.iter().zip(observed.into_iter().cycle()) {
+            let _ = writeln!(values, "{:?} {}", self.layout.slot(observed.slot).read(&engine.image), engine.name);
+        }
+        Difference { name: name.to_owned(), values }
     }
 }

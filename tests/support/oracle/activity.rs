@@ -22,7 +22,7 @@ pub(crate) struct Activity {
 #[derive(Default)]
 pub(super) struct Activities {
     all: Vec<Activity>,
-    places: HashMap<(FrameId, *const ()), usize>,
+    places: HashMap<(FrameId, *const (), &'static str), usize>,
 }
 
 impl Activities {
@@ -46,7 +46,9 @@ impl Activities {
 
     fn of<T: ?Sized>(&mut self, frame: FrameId, thing: &T, kind: &str) -> &mut Activity {
         let next = self.all.len();
-        let place = *self.places.entry((frame, std::ptr::from_ref(thing).cast())).or_insert(next);
+        // What is in a thing may lie where it does.
+        let key = (frame, std::ptr::from_ref(thing).cast(), std::any::type_name::<T>());
+        let place = *self.places.entry(key).or_insert(next);
         if place == next {
             self.all.push(Activity { kind: kind.to_owned(), toggles: 0, last: Vec::new() });
         }

@@ -75,6 +75,11 @@ impl Oracle<'_> {
                     },
                 }
             }
+        } else {
+            for (_, place) in call.outputs.iter().filter(|(output, _)| *output == Output::Eno) {
+                let target = self.locate(&walk.frame, place, &mut attempt);
+                self.put(&target, Value::bool(false));
+            }
         }
         self.activities.saw(walk.frame.id, call, &kind(self, call), pins.seen());
         let is_function = matches!(call.callee, Callee::Function(..) | Callee::UserFunction(_));
@@ -209,13 +214,11 @@ impl Oracle<'_> {
 
 /// Whether it is a box that divides integers, and divided by zero.
 fn divides_by_zero(call: &Call, pins: &Pins) -> bool {
-    use StandardFunction::{Divide, Modulo};
-    match &call.callee {
-        Callee::Function(Function::Standard(Divide | Modulo), ty) => {
-            ty.is_integer() && number(pins.inputs[1].read(*ty)) == 0
-        }
-        _ => false,
-    }
+    use StandardFunction::{Divide, DivideTime, Modulo};
+    let Callee::Function(Function::Standard(Divide | Modulo | DivideTime), _) = &call.callee else { return false };
+    let Storage::Value(divisor) = &pins.inputs[1] else { return false };
+    let divisor = divisor.get();
+    !divisor.ty().is_real() && number(divisor) == 0
 }
 
 /// What a coverage table calls a call.
@@ -223,8 +226,16 @@ fn kind(oracle: &Oracle, call: &Call) -> String {
     match &call.callee {
         Callee::Standard(block, _) if call.power_input.is_none() => format!("{} with EN", block.name()),
         Callee::Standard(block, _) => block.name().to_owned(),
-        Callee::Unit(unit, _) if oracle.checked.unit(*unit).references.is_empty() => "own block".to_owned(),
-        Callee::Unit(..) => "own block with references".to_owned(),
+        Callee::Unit(unit, _) => {
+            let references = !oracle.checked.unit(*unit).references.is_empty();
+            let kind = match (references, call.power_input) {
+                (false, Some(_)) => "own block",
+                (false, None) => "own block with EN",
+                (true, Some(_)) => "own block with references",
+                (true, None) => "own block with references, with EN",
+            };
+            kind.to_owned()
+        }
         Callee::Function(Function::Standard(function), _) => format!("box {}", function.name()),
         Callee::Function(..) => "box that converts".to_owned(),
         Callee::UserFunction(_) => "box of an own function".to_owned(),

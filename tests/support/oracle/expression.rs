@@ -33,7 +33,9 @@ impl Oracle<'_> {
                 };
                 let inputs: Vec<Option<Value>> = arguments.iter().map(value).collect();
                 let references = references.iter().map(|place| self.locate(frame, place, attempt)).collect();
-                self.result(*unit, &inputs, references, attempt.executed)
+                let result = self.result(*unit, &inputs, references, attempt.executed);
+                self.activities.saw(frame.id, expression, "own function f(a)", vec![result]);
+                result
             }
         };
         assert_eq!(value.ty(), expression.ty, "checking gave {expression:?} a type that it does not have");

@@ -29,7 +29,7 @@ impl Oracle<'_> {
             storage = match step {
                 Step::Field(field) => storage.part(*field),
                 Step::Pin(pin) => storage.pin(*pin),
-                Step::Variable(id) => storage.unit().get(*id).expect("checking knows the unit's variables").clone(),
+                Step::Variable(id) => storage.variable_of(*id),
                 Step::Element(indices) => match self.element_at(frame, place, depth, indices, attempt) {
                     Some(element) => storage.part(element),
                     None => Storage::Nowhere,
@@ -59,6 +59,8 @@ impl Oracle<'_> {
 
     fn whole(&self, frame: &Frame, place: &Place) -> Storage {
         let own = frame.get(place.variable).or_else(|| self.globals.get(place.variable));
+        // What another program declares at an address is there for all.
+        let own = own.or_else(|| self.located.get(&place.variable));
         own.unwrap_or_else(|| panic!("{} is no variable of this unit", self.checked.variable(place.variable).name))
             .clone()
     }

@@ -161,11 +161,22 @@ impl Storage {
 
     /// A pin of a standard block.
     pub(super) fn pin(&self, pin: PinId) -> Self {
+        if matches!(self, Self::Nowhere) {
+            return Self::Nowhere;
+        }
         let instance = self.block().borrow();
         Self::Value(match pin {
             PinId::Input(place) => instance.inputs[place].clone(),
             PinId::Output(place) => instance.outputs[place].clone(),
         })
+    }
+
+    /// A variable of an instance of a function block.
+    pub(super) fn variable_of(&self, id: VariableId) -> Self {
+        match self {
+            Self::Nowhere => Self::Nowhere,
+            _ => self.unit().get(id).expect("checking knows the unit's variables").clone(),
+        }
     }
 
     pub(super) fn block(&self) -> &Rc<RefCell<Instance>> {

@@ -1,22 +1,14 @@
-//! Random networks: series, parallel, nodes, and calls with all that can be wired to them.
+//! Random networks: series, parallel, nodes.
 
 use rung::elementary::Elementary;
-use rung::ladder::library::{Pin, Takes};
-use rung::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
-    Reference, Wire,
-};
+use rung::ladder::{Branch, CoilKind, ContactKind, Element, ElementKind, ExpressionKind, Reference};
 
-use super::declaration::{REGISTER_COUNT, REGISTERS};
 use super::expression::boolean;
-use super::{Generator, Instance, Purpose};
-use crate::support::drawing::{self, NOWHERE};
+use super::{Generator, Purpose};
+use crate::support::drawing;
 
 /// How deep parallels and circuits at pins nest.
 const DEPTH: usize = 3;
-
-/// The most registers in a chain.
-const LONGEST_CHAIN: usize = 4;
 
 impl Generator {
     /// One to three elements.
@@ -27,19 +19,22 @@ impl Generator {
     fn element(&mut self, depth: usize) -> Element {
         match self.dice.below(100) {
             0..15 if depth < DEPTH => self.parallel(depth + 1),
-            15..30 if depth < DEPTH && !self.instances.is_empty() => self.some_call(depth + 1),
-            30..40 => {
+            15..32 if depth < DEPTH => self.some_call(depth + 1),
+            32..40 => {
                 let condition = self.expression(Elementary::Bool, 2);
                 drawing::element(ElementKind::Condition(condition))
             }
-            40..46 => self.write(),
+            40..45 => self.write(),
+            45..48 => self.braces(),
             _ => self.contact(),
         }
     }
 
     pub(super) fn contact(&mut self) -> Element {
         use ContactKind::{Closed, Falling, Open, Rising};
-        let kind = *self.dice.pick(&[Open, Open, Open, Closed, Closed, Rising, Falling]);
+        let kinds = [Open, Open, Open, Closed, Closed, Rising, Falling];
+        // A function has no memory for edges.
+        let kind = *self.dice.pick(if self.in_function { &kinds[..5] } else { &kinds });
         let constant = self.dice.percent(3).then(|| boolean(self.dice.percent(70)));
         let operand = constant.unwrap_or_else(|| {
             let reference = self.readable(Elementary::Bool, Purpose::Read).expect("every program has a BOOL");
@@ -63,8 +58,17 @@ impl Generator {
         }
     }
 
+    /// Structured text in a rung.
+    fn braces(&mut self) -> Element {
+        let statements = self.statements(0, false);
+        drawing::element(ElementKind::Statements(statements))
+    }
+
     fn write(&mut self) -> Element {
         use CoilKind::{Falling, Negated, Plain, Reset, Rising, Set};
+        if self.dice.percent(18) {
+            return self.braces();
+        }
         if self.dice.percent(35) {
             let ty = self.some_type();
             if let Some(target) = self.target(ty) {
@@ -72,18 +76,24 @@ impl Generator {
                 return drawing::element(ElementKind::Assignment { target, value });
             }
         }
-        let kind = *self.dice.pick(&[Plain, Plain, Plain, Negated, Set, Set, Reset, Reset, Rising, Falling]);
+        let kinds = [Plain, Plain, Plain, Negated, Set, Set, Reset, Reset, Rising, Falling];
+        let kind = *self.dice.pick(if self.in_function { &kinds[..8] } else { &kinds });
         let target = self.target(Elementary::Bool).expect("every program has a BOOL output");
         drawing::element(ElementKind::Coil { kind, target })
     }
 
     /// Something of a type that can be written.
-    fn target(&mut self, ty: Elementary) -> Option<Reference> {
+    pub(super) fn target(&mut self, ty: Elementary) -> Option<Reference> {
         if ty == Elementary::Bool
             && self.dice.percent(8)
             && let Some(bit) = self.bit(Purpose::Write)
         {
             return Some(bit);
+        }
+        if self.dice.percent(4)
+            && let Some(pin) = self.pin(ty)
+        {
+            return Some(pin);
         }
         self.place(ty, Purpose::Write)
     }
@@ -131,105 +141,4 @@ impl Generator {
         }
         branches
     }
-
-    /// A call of an instance that was not called yet or, seldom, of one that was.
-    fn some_call(&mut self, depth: usize) -> Element {
-        if self.pending.is_empty() {
-            if !self.dice.percent(5) {
-                return self.contact();
-            }
-            let instance = self.dice.pick(&self.instances).clone();
-            return self.call(&Instance { declared: true, ..instance }, depth);
-        }
-        let next = self.dice.below(self.pending.len());
-        let instance = self.pending.swap_remove(next);
-        self.call(&instance, depth)
-    }
-
-    fn call(&mut self, instance: &Instance, depth: usize) -> Element {
-        let block = instance.block;
-        let mut arguments = self.wired_inputs(instance, depth);
-        for pin in block.outputs() {
-            if self.dice.percent(20)
-                && let Some(target) = self.target(pin.ty)
-            {
-                arguments.push(drawing::argument(pin.name, Wire::Output(target)));
-            }
-        }
-        if self.dice.percent(20) {
-            arguments.reverse();
-        }
-        let bools: Vec<&str> =
-            block.outputs().iter().filter(|pin| pin.ty == Elementary::Bool).map(|pin| pin.name).collect();
-        let chosen = !bools.is_empty() && self.dice.percent(if bools.len() > 1 { 60 } else { 15 });
-        drawing::element(ElementKind::Block(BlockCall {
-            instance: Reference::of_name(drawing::name(&instance.name)),
-            type_name: (!instance.declared || self.dice.percent(10)).then(|| drawing::name(block.name())),
-            arguments,
-            power_output: chosen.then(|| drawing::name(self.dice.pick::<&str>(&bools))),
-        }))
-    }
-
-    /// With the first BOOL input among them, or without one, the power on the left is EN.
-    fn wired_inputs(&mut self, instance: &Instance, depth: usize) -> Vec<Argument> {
-        let block = instance.block;
-        let enable = self.dice.percent(25);
-        let mut arguments = Vec::new();
-        let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
-        for (index, pin) in block.inputs().iter().enumerate() {
-            let wire = match (index, pin.ty) {
-                _ if pin.takes == Takes::Reference => Wire::Value(self.register()),
-                _ if pin.takes == Takes::Constant => Wire::Value(constant(pin, instance)),
-                _ if Some(index) == power && !enable => continue,
-                _ if Some(index) == power => self.bool_wire(depth),
-                (_, Elementary::Bool) if self.dice.percent(30) => continue,
-                (_, Elementary::Bool) => self.bool_wire(depth),
-                _ if self.dice.percent(8) => continue,
-                (_, ty) if pin.range.is_some() => {
-                    // A constant beyond the range is an error, also one that is computed.
-                    let variable = self.dice.percent(30).then(|| self.place(ty, Purpose::ReadVariable)).flatten();
-                    Wire::Value(variable.map_or_else(
-                        || self.small_constant(pin),
-                        |reference| drawing::expression(ExpressionKind::Read(reference)),
-                    ))
-                }
-                (_, ty) => Wire::Value(self.preset(ty)),
-            };
-            let name = if self.dice.percent(20) { pin.name.to_lowercase() } else { pin.name.to_owned() };
-            arguments.push(drawing::argument(&name, wire));
-        }
-        arguments
-    }
-
-    /// One of the registers that every program has, such that a chain of some more may follow.
-    fn register(&mut self) -> Expression {
-        drawing::read(&format!("{REGISTERS}[{}]", self.dice.below(REGISTER_COUNT as usize - LONGEST_CHAIN)))
-    }
-
-    fn small_constant(&mut self, pin: &Pin) -> Expression {
-        let numbers = small_constants(pin);
-        drawing::integer((*self.dice.pick(&numbers)).into())
-    }
-
-    fn bool_wire(&mut self, depth: usize) -> Wire {
-        if self.dice.percent(50) {
-            return Wire::Value(self.expression(Elementary::Bool, 1));
-        }
-        let around = std::mem::replace(&mut self.in_pin, true);
-        let branches = (0..self.dice.between(1, 2)).map(|_| drawing::branch(self.series(depth + 1))).collect();
-        self.in_pin = around;
-        Wire::Circuit(Circuit { branches, span: NOWHERE })
-    }
-}
-
-/// The same in every call of an instance: what kind of timer it is does not change.
-fn constant(pin: &Pin, instance: &Instance) -> Expression {
-    let numbers = small_constants(pin);
-    let chosen = instance.name.bytes().map(usize::from).sum::<usize>() % numbers.len();
-    drawing::integer(numbers[chosen].into())
-}
-
-fn small_constants(pin: &Pin) -> Vec<i64> {
-    let (least, greatest) = pin.range.expect("a pin that takes a constant says which");
-    (least..=greatest).take(LONGEST_CHAIN).collect()
 }

@@ -1,10 +1,10 @@
 //! Random expressions that have the type they should.
 
 use rung::elementary::Elementary;
-use rung::ladder::library::Takes;
-use rung::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Root, Step, UnaryOperator};
+use rung::ladder::library::{Pin, StandardBlock, Takes};
+use rung::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Reference, Step, UnaryOperator};
 
-use super::{Generator, Purpose};
+use super::{Generator, Kind, Purpose};
 use crate::support::drawing::{self, NOWHERE};
 
 const MILLISECOND: i64 = 1_000_000;
@@ -100,6 +100,7 @@ impl Generator {
         }
         match self.readable(ty, Purpose::Read) {
             Some(reference) if !self.dice.percent(15) => drawing::expression(ExpressionKind::Read(reference)),
+            _ if ty == Elementary::Int && self.has_colours() && self.dice.percent(50) => self.colour(),
             _ => self.literal(ty, false),
         }
     }
@@ -134,21 +135,36 @@ impl Generator {
         self.place(ty, purpose)
     }
 
+    /// An output of a standard block, seldom an input.
     fn member(&mut self, ty: Elementary) -> Option<Reference> {
+        let (instance, block) = self.standard_instance()?;
+        let pins = if self.dice.percent(10) { block.inputs() } else { block.outputs() };
+        self.pin_of(instance, pins, ty)
+    }
+
+    /// An input of an instance of a standard block, which may be written like a variable.
+    pub(super) fn pin(&mut self, ty: Elementary) -> Option<Reference> {
+        let (instance, block) = self.standard_instance()?;
+        self.pin_of(instance, block.inputs(), ty)
+    }
+
+    fn standard_instance(&mut self) -> Option<(Reference, StandardBlock)> {
         if self.instances.is_empty() {
             return None;
         }
         let instance = self.dice.pick(&self.instances).clone();
-        let outputs = instance.block.outputs();
-        let pins = if self.dice.percent(10) { instance.block.inputs() } else { outputs };
-        let fitting: Vec<&str> =
-            pins.iter().filter(|pin| pin.ty == ty && pin.takes == Takes::Value).map(|pin| pin.name).collect();
+        match instance.kind {
+            Kind::Standard(block) => Some((instance.reference, block)),
+            Kind::Own(_) => None,
+        }
+    }
+
+    fn pin_of(&mut self, mut instance: Reference, pins: &[Pin], ty: Elementary) -> Option<Reference> {
+        let fits = |pin: &&Pin| pin.ty == ty && pin.takes == Takes::Value;
+        let fitting: Vec<&str> = pins.iter().filter(fits).map(|pin| pin.name).collect();
         let pin = *fitting.get(self.dice.below(fitting.len()))?;
-        Some(Reference {
-            root: Root::Name(drawing::name(&instance.name)),
-            steps: vec![Step::Member(drawing::name(pin))],
-            span: NOWHERE,
-        })
+        instance.steps.push(Step::Member(drawing::name(pin)));
+        Some(instance)
     }
 
     /// A bit of a bit string.
@@ -231,7 +247,7 @@ pub(super) fn boolean(value: bool) -> Expression {
     drawing::expression(ExpressionKind::Literal(Literal::Bool(value)))
 }
 
-fn time(nanoseconds: i64) -> Expression {
+pub(super) fn time(nanoseconds: i64) -> Expression {
     drawing::expression(ExpressionKind::Literal(Literal::Time(nanoseconds)))
 }
 

@@ -4,12 +4,40 @@ use rung::elementary::Elementary;
 use rung::ladder::functions::StandardFunction;
 use rung::ladder::{Expression, ExpressionKind, FunctionArgument};
 
-use super::Generator;
+use super::{Generator, Purpose};
 use crate::support::drawing;
 
 impl Generator {
     /// A function with a result of type `ty`, and operands at most `depth` - 1 operators deep.
     pub(super) fn function(&mut self, ty: Elementary, depth: usize) -> Expression {
+        if self.dice.percent(25)
+            && let Some((own, arguments)) = self.own_function(ty, depth)
+        {
+            let named = self.dice.percent(40);
+            let names = own.inputs.iter().map(|(name, _)| name).chain(own.references.iter().map(|(name, _)| name));
+            let arguments = names.zip(arguments).map(|(name, value)| FunctionArgument {
+                parameter: named.then(|| drawing::name(name)),
+                value: drawing::expression(value),
+            });
+            return call(&own.name, arguments.collect());
+        }
+        let (name, operands) = self.called(ty, depth);
+        let is_conversion = name.contains("TO_") || name.starts_with("TRUNC");
+        let named = !is_conversion && self.dice.percent(20);
+        let arguments = operands.into_iter();
+        let mut arguments: Vec<FunctionArgument> = arguments
+            .map(|(pin, value)| FunctionArgument { parameter: named.then(|| drawing::name(&pin)), value })
+            .collect();
+        if named {
+            // In any order.
+            let turn = self.dice.below(arguments.len());
+            arguments.rotate_left(turn);
+        }
+        call(&name, arguments)
+    }
+
+    /// A standard function with a result of type `ty`, and its operands, each with its parameter.
+    pub(super) fn called(&mut self, ty: Elementary, depth: usize) -> (String, Vec<(String, Expression)>) {
         use StandardFunction as F;
         let mut choices = vec![F::Move, F::Select, F::Multiplex, F::Limit, F::Maximum, F::Minimum];
         if ty.is_integer() || ty.is_real() {
@@ -40,18 +68,8 @@ impl Generator {
         }
         let function = *self.dice.pick(&choices);
         let operands = self.operands(function, ty, depth);
-        let named = self.dice.percent(20);
-        let mut arguments: Vec<FunctionArgument> = operands
-            .into_iter()
-            .enumerate()
-            .map(|(place, value)| FunctionArgument { parameter: named.then(|| parameter(function, place)), value })
-            .collect();
-        if named {
-            // In any order.
-            let turn = self.dice.below(arguments.len());
-            arguments.rotate_left(turn);
-        }
-        call(function.name(), arguments)
+        let pins = (0..operands.len()).map(|place| parameter(function, place));
+        (function.name().to_owned(), pins.zip(operands).collect())
     }
 
     fn operands(&mut self, function: StandardFunction, ty: Elementary, depth: usize) -> Vec<Expression> {
@@ -91,15 +109,17 @@ impl Generator {
         *self.dice.pick(&integers)
     }
 
-    fn conversion(&mut self, to: Elementary, depth: usize) -> Expression {
+    fn conversion(&mut self, to: Elementary, depth: usize) -> (String, Vec<(String, Expression)>) {
         let from = if to.is_integer() && self.dice.percent(20) { Elementary::Real } else { self.some_type() };
+        // What is converted from a constant is one, and may then overflow.
+        let from = if self.place(from, Purpose::ReadVariable).is_some() { from } else { Elementary::Bool };
         let operand = self.anchored(from, depth - 1);
         let name = match self.dice.below(3) {
             0 => format!("TO_{to}"),
             1 if to.is_integer() && from.is_real() => format!("TRUNC_{to}"),
             _ => format!("{from}_TO_{to}"),
         };
-        call(&name, vec![FunctionArgument { parameter: None, value: operand }])
+        (name, vec![("IN".to_owned(), operand)])
     }
 }
 
@@ -107,9 +127,9 @@ fn call(name: &str, arguments: Vec<FunctionArgument>) -> Expression {
     drawing::expression(ExpressionKind::Call { function: drawing::name(name), arguments })
 }
 
-fn parameter(function: StandardFunction, place: usize) -> rung::ladder::Name {
+fn parameter(function: StandardFunction, place: usize) -> String {
     let listed = function.parameters().get(place).map(|parameter| parameter.name.to_owned());
     // The inputs of MUX are numbered from 0, behind its selector.
     let first = if function == StandardFunction::Multiplex { 0 } else { 2 };
-    drawing::name(&listed.unwrap_or_else(|| format!("IN{}", place - 1 + first)))
+    listed.unwrap_or_else(|| format!("IN{}", place - 1 + first))
 }

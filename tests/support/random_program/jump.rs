@@ -14,7 +14,7 @@ impl Generator {
         if self.dice.percent(50) {
             return;
         }
-        let names: Vec<Option<Name>> = self.program.units[0].rungs.iter().map(|rung| rung.name.clone()).collect();
+        let names: Vec<Option<Name>> = self.unit.rungs.iter().map(|rung| rung.name.clone()).collect();
         for place in 0..names.len() {
             if !self.dice.percent(25) {
                 continue;
@@ -28,11 +28,11 @@ impl Generator {
             };
             // A signal that is on half of the time would leave out too much.
             let elements = vec![self.contact(), self.contact(), drawing::element(kind)];
-            let mut rung = std::mem::replace(&mut self.program.units[0].rungs[place], drawing::rung(Vec::new()));
+            let mut rung = std::mem::replace(&mut self.unit.rungs[place], drawing::rung(Vec::new()));
             let circuit = self.some_circuit(&mut rung.circuit);
             let among = self.dice.below(circuit.branches.len() + 1);
             circuit.branches.insert(among, drawing::branch(elements));
-            self.program.units[0].rungs[place] = rung;
+            self.unit.rungs[place] = rung;
         }
     }
 
