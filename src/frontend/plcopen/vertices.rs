@@ -4,7 +4,8 @@
 //! that is needed once and has no EN stands as a formula where it is needed; else it is a box, and what others read of it
 //! is kept in a hidden variable.
 
-use std::collections::HashMap;
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
 
 use super::diagram::{Block, Coil, Diagram, Edge, ItemKind, Modifier, Source, Storage, negate};
 use super::network::{Feed, PowerPin, Vertex, coil_kind};
@@ -16,7 +17,7 @@ use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::{
     Argument, BinaryOperator, BlockCall, ContactKind, ElementKind, Expression, ExpressionKind, FunctionArgument,
-    Literal, Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire,
+    Literal, Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire, key,
 };
 use crate::source::Span;
 
@@ -24,6 +25,8 @@ use crate::source::Span;
 pub(super) const INVERTER: &str = "NOT";
 /// How deep formulas are put into each other.
 const MOST_NESTED: usize = 24;
+/// How many operands are looked at for the type of one hidden variable: functions in circles have any number.
+const MOST_LOOKS: usize = 64;
 
 /// One use of what a block gives.
 struct Use {
@@ -58,8 +61,12 @@ pub(super) struct Builder<'d, 'r> {
     /// For each block the output that gives the power on its right.
     main: Vec<Option<usize>>,
     uses: HashMap<usize, Vec<Use>>,
-    /// Hidden variables, by block and output.
-    kept: HashMap<(usize, usize), Name>,
+    /// Places of hidden variables, by block and output.
+    kept: HashMap<(usize, usize), usize>,
+    /// The names of hidden variables and instances, as they are compared.
+    taken: HashSet<String>,
+    /// How many operands may still be looked at for a type.
+    looks: Cell<usize>,
     /// The last vertex with an effect.
     last: Option<usize>,
 }
@@ -79,6 +86,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             main: vec![None; count],
             uses: HashMap::new(),
             kept: HashMap::new(),
+            taken: HashSet::new(),
+            looks: Cell::new(0),
             last: None,
         };
         builder.find_uses();
@@ -524,8 +533,8 @@ impl<'d, 'r> Builder<'d, 'r> {
 
     /// The hidden variable that keeps what a function gives.
     fn keep(&mut self, item: usize, output: usize) -> Name {
-        if let Some(name) = self.kept.get(&(item, output)) {
-            return name.clone();
+        if let Some(place) = self.kept.get(&(item, output)) {
+            return self.hidden[*place].name.clone();
         }
         let span = self.diagram.items[item].span;
         let Some(block) = self.block(item) else { return Name::new("_", span) };
@@ -536,20 +545,18 @@ impl<'d, 'r> Builder<'d, 'r> {
         // What is read before it is written holds its value from one scan to the next.
         let back = uses.iter().any(|used| used.output == output && self.order.step[used.user] <= self.order.step[item]);
         let class = if back { VariableClass::Memory } else { VariableClass::Temporary };
+        self.looks.set(MOST_LOOKS);
         let ty = self.type_of(item, output, 0).unwrap_or_else(|| elementary(Elementary::Int, span));
         let variable =
             Variable { class, name: name.clone(), ty: Some(ty), address: None, initial: None, retain: false, span };
+        self.kept.insert((item, output), self.hidden.len());
         self.hidden.push(variable);
-        self.kept.insert((item, output), name.clone());
         name
     }
 
     /// A name that the unit does not declare.
-    fn hidden_name(&self, mut name: String) -> String {
-        let taken = |name: &str| {
-            self.scope.declares(name) || self.hidden.iter().any(|hidden| hidden.name.text.eq_ignore_ascii_case(name))
-        };
-        while taken(&name) {
+    fn hidden_name(&mut self, mut name: String) -> String {
+        while self.scope.declares(&name) || !self.taken.insert(key(&name)) {
             name.push('_');
         }
         name
@@ -590,9 +597,11 @@ impl<'d, 'r> Builder<'d, 'r> {
     }
 
     fn source_type(&self, source: Source, depth: usize) -> Option<TypeReference> {
-        if depth > MOST_NESTED {
+        let looks = self.looks.get();
+        if depth > MOST_NESTED || looks == 0 {
             return None;
         }
+        self.looks.set(looks - 1);
         match source {
             Source::Rail | Source::Power(_) => None,
             Source::Value(item) => self.scope.value(value_of(&self.diagram.items[item].kind)?),
@@ -606,10 +615,7 @@ impl<'d, 'r> Builder<'d, 'r> {
                 match &block.instance {
                     Some(_) => self.scope.signatures.pin(&block.type_name.text, &block.outputs[output].name.text, span),
                     None => match self.kept.get(&(item, output)) {
-                        Some(name) => {
-                            let kept = self.hidden.iter().find(|hidden| hidden.name.text == name.text);
-                            kept.and_then(|kept| kept.ty.clone())
-                        }
+                        Some(place) => self.hidden[*place].ty.clone(),
                         None => self.type_of(item, output, depth + 1),
                     },
                 }
