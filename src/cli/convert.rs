@@ -8,6 +8,7 @@ use super::{Failure, load, report, write_whole};
 use crate::check::check;
 use crate::diagnostic::{self, any_error};
 use crate::frontend::{native, structured_text};
+use crate::ladder::Origin;
 
 /// Writes a program in another format; what it computes stays the same
 #[derive(Debug, clap::Args)]
@@ -40,9 +41,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::diagnostics(&loaded.source, &diagnostics));
     }
     report(&diagnostic::render(&loaded.source, &diagnostics));
+    let mut program = loaded.program;
     let text = match arguments.to {
-        Format::Native => Ok(native::print(&loaded.program)),
-        Format::St => structured_text::print(&loaded.program),
+        Format::Native => {
+            // Only what is doubtful in native text has to say that it is not of it.
+            let origin = std::mem::replace(&mut program.origin, Origin::Native);
+            if check(&program).0.is_none() {
+                program.origin = origin;
+            }
+            Ok(native::print(&program))
+        }
+        Format::St => structured_text::print(&program),
     };
     let text = text.map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;
     write_whole(&arguments.output, text.as_bytes())
