@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use super::{Failure, load, report, write_whole};
 use crate::check::check;
 use crate::diagnostic::{self, any_error};
-use crate::frontend::{native, structured_text};
+use crate::frontend::{native, plcopen, structured_text};
 use crate::ladder::Origin;
 
 /// Writes a program in another format; what it computes stays the same
@@ -27,6 +27,8 @@ pub(super) struct Arguments {
 enum Format {
     /// Rung's own text
     Native,
+    /// PLCopen TC6 XML, as OpenPLC Editor and Beremiz open it
+    Plcopen,
     /// Structured Text for other IEC compilers
     St,
 }
@@ -51,6 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Ok(native::print(&program))
         }
+        Format::Plcopen => plcopen::print(&program),
         Format::St => structured_text::print(&program),
     };
     let text = text.map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;

@@ -18,7 +18,10 @@ mod rungs;
 mod textual;
 mod types;
 mod vertices;
+mod write;
 mod xml;
+
+pub use self::write::print;
 
 use std::collections::HashSet;
 

@@ -10,7 +10,7 @@ mod names;
 mod order;
 mod power;
 mod rungs;
-mod uses;
+pub(in crate::frontend) mod uses;
 mod words;
 
 pub(in crate::frontend) use declarations::{Instances, Used, instances, used};
