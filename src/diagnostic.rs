@@ -111,6 +111,7 @@ codes! {
     BadResource = 513 Error "a task, program instance or resource that cannot be",
     MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
     SeparateAddresses = 515 Warning "addresses that overlap only in number",
+    LeftOut = 516 Warning "something that Rung has not is left out",
     DanglingConnection = 521 Error "a wire from an element that there is not",
     DuplicateId = 522 Error "two elements of one id",
     PowerCycle = 523 Error "power that runs in a circle",

@@ -3,11 +3,14 @@
 //! One module a format. A front end is pure, and must never panic: whatever the bytes, the answer is a program,
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
+mod leave_out;
 mod missing;
 pub mod native;
 pub mod plcopen;
 pub mod structured_text;
 mod text;
+
+pub use leave_out::leave_out;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;

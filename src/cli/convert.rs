@@ -34,15 +34,12 @@ enum Format {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let loaded = load(&arguments.file)?;
-    let mut diagnostics = loaded.diagnostics;
-    if !any_error(&diagnostics) {
-        diagnostics.extend(check(&loaded.program).1);
+    let mut loaded = load(&arguments.file)?;
+    loaded.check();
+    if any_error(&loaded.diagnostics) {
+        return Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics));
     }
-    if any_error(&diagnostics) {
-        return Err(Failure::diagnostics(&loaded.source, &diagnostics));
-    }
-    report(&diagnostic::render(&loaded.source, &diagnostics));
+    report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
     let mut program = loaded.program;
     let text = match arguments.to {
         Format::Native => {

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Failure, report};
 use crate::check::{Checked, check};
 use crate::diagnostic::{self, Code, Diagnostic, any_error};
-use crate::frontend::{self, Parsed};
+use crate::frontend::{self, Parsed, leave_out};
 use crate::ladder::Program;
 use crate::source::{MAXIMUM_BYTES, Source};
 
@@ -61,22 +61,45 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { source, program, diagnostics })
 }
 
+impl Loaded {
+    /// Checks what there is of the program, with everything that there is to say about it. What Rung has not is left out, and
+    /// the rest checked; where the front end found other errors, what the rest would mean is guesswork.
+    pub(crate) fn check(&mut self) -> Option<Checked> {
+        if self.diagnostics.iter().any(|found| found.is_error() && found.code != Code::NotSupported) {
+            return None;
+        }
+        self.diagnostics.extend(leave_out(&mut self.program));
+        let (checked, found) = check(&self.program);
+        self.diagnostics.extend(found);
+        checked
+    }
+}
+
+/// Whether a program runs without what Rung has not.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct Missing {
+    /// Run a program of another tool without the elements that Rung has not; no power passes where they were
+    #[arg(long)]
+    allow_missing: bool,
+}
+
 /// Reads, parses and checks a program that is to run; warnings are printed.
 ///
 /// # Errors
 /// When it cannot be read or has an error.
-pub(crate) fn load_checked(path: &Path) -> Result<(Loaded, Checked), Failure> {
+pub(crate) fn load_checked(path: &Path, missing: Missing) -> Result<(Loaded, Checked), Failure> {
     let mut loaded = load(path)?;
-    if any_error(&loaded.diagnostics) {
-        return Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics));
+    let checked = loaded.check();
+    if missing.allow_missing {
+        for found in loaded.diagnostics.iter_mut().filter(|found| found.code == Code::NotSupported) {
+            found.code = Code::LeftOut;
+        }
     }
-    let (checked, found) = check(&loaded.program);
-    loaded.diagnostics.extend(found);
     match checked {
-        Some(checked) => {
+        Some(checked) if !any_error(&loaded.diagnostics) => {
             report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
             Ok((loaded, checked))
         }
-        None => Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics)),
+        _ => Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics)),
     }
 }

@@ -10,7 +10,7 @@ use rung::check::{Checked, check};
 use rung::diagnostic::{Code, Diagnostic, any_error};
 use rung::engine::interp::Interpreter;
 use rung::engine::jit::Jit;
-use rung::frontend::{self, native, structured_text};
+use rung::frontend::{self, native, plcopen, structured_text};
 use rung::ladder::Program;
 use rung::lower::lower;
 use rung::opt;
@@ -26,10 +26,11 @@ const SCANS: u64 = 1000;
 const FEWER: u64 = 200;
 
 /// Writes a program in one format.
-type Writer = fn(&Program) -> Result<String, Vec<Diagnostic>>;
+pub(crate) type Writer = fn(&Program) -> Result<String, Vec<Diagnostic>>;
 
 /// The formats that are written.
-const WRITERS: [(&str, Writer); 2] = [("native", |program| Ok(native::print(program))), ("ST", structured_text::print)];
+pub(crate) const WRITERS: [(&str, Writer); 3] =
+    [("native", |program| Ok(native::print(program))), ("ST", structured_text::print), ("PLCopen", plcopen::print)];
 
 #[test]
 #[expect(clippy::print_stdout, reason = "the table is for whoever runs the test with --nocapture")]
@@ -135,7 +136,7 @@ fn engines(checked: &Checked) -> Result<(), String> {
 }
 
 /// Writes a program, reads it again and compares.
-fn comes_back(program: &Program, checked: &Checked, write: Writer) -> Result<(), String> {
+pub(crate) fn comes_back(program: &Program, checked: &Checked, write: Writer) -> Result<(), String> {
     let said = |problems: &[Diagnostic]| {
         let errors = problems.iter().filter(|problem| problem.is_error());
         errors.map(|problem| format!("{}: {}", problem.code, problem.message)).collect::<Vec<_>>().join("; ")

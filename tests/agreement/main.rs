@@ -8,6 +8,7 @@ mod examples;
 mod faults;
 mod guards;
 mod jumps;
+mod one_program;
 mod random;
 mod register_machine;
 mod statements;

@@ -13,7 +13,7 @@ mod rungs;
 pub(in crate::frontend) mod uses;
 mod words;
 
-pub(in crate::frontend) use declarations::{Instances, Used, instances, used};
+pub(in crate::frontend) use declarations::{Instances, instances, used};
 pub(in crate::frontend) use names::Names;
 pub(in crate::frontend) use order::of_units;
 use rungs::Rungs;
@@ -34,11 +34,11 @@ pub fn print(program: &Program) -> Result<String, Vec<Diagnostic>> {
         problems.push(Diagnostic::new(Code::CannotConvert, registers.span, message));
     }
     let mut names = Names::of(program);
-    let instances = declarations::instances(program, &mut names);
+    let instances = instances(program, &mut names);
     let mut text = String::new();
     let mut comments = Comments { rest: &program.comments };
     declarations::types(&mut text, program, Words { names: &names });
-    for place in order::of_units(program) {
+    for place in of_units(program) {
         let unit = &program.units[place];
         text.push_str(&self::unit(program, unit, &instances, &mut names, &mut comments, &mut problems));
     }
@@ -51,7 +51,7 @@ pub fn print(program: &Program) -> Result<String, Vec<Diagnostic>> {
 fn unit(
     program: &Program,
     unit: &Unit,
-    instances: &declarations::Instances,
+    instances: &Instances,
     names: &mut Names,
     comments: &mut Comments<'_>,
     problems: &mut Vec<Diagnostic>,

@@ -78,16 +78,6 @@ impl Xml {
         }
     }
 
-    /// Adds what was written apart.
-    pub(super) fn append(&mut self, other: &str) {
-        self.text.push_str(other);
-    }
-
-    /// How deep the next element stands.
-    pub(super) fn at_depth(depth: usize) -> Self {
-        Self { text: String::new(), depth }
-    }
-
     /// All of it.
     pub(super) fn finish(self) -> String {
         self.text

@@ -1,7 +1,7 @@
 //! What rungs mention: variables, functions, blocks. Each thing is shown once for each place where it stands.
 
 use crate::ladder::{
-    BlockCall, Circuit, ElementKind, Expression, ExpressionKind, Name, Program, Reference, Root, Statement,
+    BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Name, Program, Reference, Root, Statement,
     StatementKind, Step, Wire,
 };
 
@@ -32,20 +32,22 @@ pub(in crate::frontend) fn blocks_declared_by_use<'a>(program: &'a Program, visi
 }
 
 pub(in crate::frontend) fn circuit<'a>(circuit_: &'a Circuit, visit: Visit<'_, 'a>) {
-    for element in circuit_.branches.iter().flat_map(|branch| &branch.elements) {
-        match &element.kind {
-            ElementKind::Contact { operand, .. } => expression(operand, visit),
-            ElementKind::Coil { target, .. } => reference(target, visit),
-            ElementKind::Block(block) => call(block, visit),
-            ElementKind::Condition(condition) => expression(condition, visit),
-            ElementKind::Assignment { target, value } => {
-                reference(target, visit);
-                expression(value, visit);
-            }
-            ElementKind::Statements(list) => statements(list, visit),
-            ElementKind::Parallel(inner) => circuit(inner, visit),
-            ElementKind::Jump { .. } | ElementKind::Return => {}
+    circuit_.branches.iter().flat_map(|branch| &branch.elements).for_each(|one| element(one, visit));
+}
+
+pub(in crate::frontend) fn element<'a>(element: &'a Element, visit: Visit<'_, 'a>) {
+    match &element.kind {
+        ElementKind::Contact { operand, .. } => expression(operand, visit),
+        ElementKind::Coil { target, .. } => reference(target, visit),
+        ElementKind::Block(block) => call(block, visit),
+        ElementKind::Condition(condition) => expression(condition, visit),
+        ElementKind::Assignment { target, value } => {
+            reference(target, visit);
+            expression(value, visit);
         }
+        ElementKind::Statements(list) => statements(list, visit),
+        ElementKind::Parallel(inner) => circuit(inner, visit),
+        ElementKind::Jump { .. } | ElementKind::Return => {}
     }
 }
 
