@@ -96,7 +96,9 @@ fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
             first.interpreter.scan(&mut first.image, now);
             second.interpreter.scan(&mut second.image, now);
             // A name that IEC 61131-3 has not is another one there, and stands in a comment behind its declaration.
-            for observed in first.layout.observed().iter().filter(|observed| !text.contains(&format!("; (* {} *)", observed.name))) {
+            for observed in
+                first.layout.observed().iter().filter(|observed| !text.contains(&format!("; (* {} *)", observed.name)))
+            {
                 let expected = first.get(&observed.name);
                 let found = second.get(&observed.name);
                 assert_eq!(found, expected, "seed {seed}, scan {scan}: {}\n{native}\n{text}", observed.name);
