@@ -7,6 +7,7 @@ use super::Checker;
 use super::address::{Extent, class_of, direct_type};
 use super::model::{ArrayType, Dimension, Initial, Type, Variable};
 use super::scope::State;
+use super::type_table::MOST_ELEMENTS;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
 use crate::ladder::{
@@ -71,11 +72,17 @@ impl Checker<'_> {
         for ((name, class), used) in REGISTERS.into_iter().zip(direct.registers) {
             let size = self.registers.size_of(class);
             let Some((needed, span)) = used.or(size.map(|(_, span)| (0, span))) else { continue };
-            let count = u32::try_from(size.map_or(needed, |(size, _)| size)).unwrap_or(0).max(1);
+            let count = size.map_or(needed, |(size, _)| size).max(1);
+            let fits = u32::try_from(count).ok().filter(|count| *count <= MOST_ELEMENTS);
+            if fits.is_none() {
+                let message = format!("there cannot be {count} registers");
+                self.report.push(Diagnostic::new(Code::TooManyElements, span, message));
+            }
+            let (count, state) = fits.map_or((1, State::Broken), |count| (count, State::Known));
             let dimensions = vec![Dimension { first: 0, count }];
             let ty = Type::Array(self.array(ArrayType { dimensions, element: Type::Elementary(Elementary::Word) }));
             // One of that name was declared otherwise.
-            let _ = self.scope.add(variable(name.to_owned(), class, ty, None, span), State::Known);
+            let _ = self.scope.add(variable(name.to_owned(), class, ty, None, span), state);
         }
     }
 

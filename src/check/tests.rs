@@ -1,13 +1,18 @@
 //! Tests of checking: one file a theme, on programs that [`build`] makes.
 
 mod addresses;
+mod boxes;
 mod build;
 mod jumps;
 mod limits;
 mod names;
 mod random;
+mod statements;
 mod structure;
+mod types;
+mod units;
 mod values;
+mod written;
 
 use super::{Checked, check};
 use crate::diagnostic::{Code, Diagnostic};

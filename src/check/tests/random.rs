@@ -9,8 +9,8 @@ use crate::check;
 use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{
-    self, Argument, BinaryOperator, Branch, CoilKind, ContactKind, Element, ElementKind, Expression, Rung, Variable,
-    Wire,
+    self, Argument, BinaryOperator, Branch, CaseBranch, CaseLabel, CoilKind, ConditionalBranch, ContactKind, Element,
+    ElementKind, Expression, Rung, Statement, StatementKind, Variable, Wire,
 };
 
 const TYPES: [&str; 9] = ["BOOL", "INT", "DINT", "WORD", "REAL", "TIME", "TON", "NONE", "BYTE"];
@@ -157,8 +157,65 @@ impl Choices {
         }
     }
 
+    fn function_box(&mut self) -> Element {
+        let function =
+            if self.rarely() { "TRUNC" } else { self.of(&["SUB", "LIMIT", "GT", "twice", "MOVE", "INT_TO_TIME"]) };
+        let pins: &[&str] = match function {
+            "LIMIT" => &["MN", "IN", "MX"],
+            "SUB" | "GT" => &["IN1", "IN2"],
+            _ => &["IN"],
+        };
+        let mut arguments: Vec<Argument> = pins.iter().map(|pin| value(pin, self.expression(Wanted::Int, 1))).collect();
+        let target = match function {
+            "GT" => Wanted::Bool,
+            "INT_TO_TIME" => Wanted::Time,
+            _ => Wanted::Int,
+        };
+        arguments.push(to("OUT", self.target(target)));
+        if self.rarely() {
+            arguments.pop();
+        }
+        call(function, arguments)
+    }
+
+    fn statements(&mut self, depth: usize) -> Vec<Statement> {
+        self.list(3, |choices| choices.statement(depth))
+    }
+
+    fn statement(&mut self, depth: usize) -> Statement {
+        let kind = match self.below(if depth == 0 { 1 } else { 5 }) {
+            0 | 4 => {
+                let wanted = self.wanted();
+                let target = reference(self.target(wanted));
+                StatementKind::Assignment { target, value: self.expression(wanted, 2) }
+            }
+            1 => {
+                let branch =
+                    ConditionalBranch { condition: self.expression(Wanted::Bool, 2), body: self.statements(depth - 1) };
+                StatementKind::If { branches: vec![branch], otherwise: self.statements(depth - 1) }
+            }
+            2 => {
+                let label = CaseLabel { first: int(self.below(9) as u128), last: None };
+                let branch = CaseBranch { labels: vec![label], body: self.statements(depth - 1) };
+                let selector = self.expression(Wanted::Int, 1);
+                StatementKind::Case { selector, branches: vec![branch], otherwise: self.statements(depth - 1) }
+            }
+            _ => {
+                let last = self.of(&[3, 0, 300, 32_767, 70_000]);
+                StatementKind::For {
+                    variable: reference("n"),
+                    first: int(0),
+                    last: if self.rarely() { read("n") } else { int(last) },
+                    step: self.rarely().then(|| int(0)),
+                    body: self.statements(depth - 1),
+                }
+            }
+        };
+        Statement { kind, span: span("statement") }
+    }
+
     fn element(&mut self, depth: usize) -> Element {
-        match self.below(if depth == 0 { 4 } else { 7 }) {
+        match self.below(if depth == 0 { 6 } else { 9 }) {
             0 => contact(self.of(&CONTACTS), read(self.source(Wanted::Bool))),
             1 => coil_of(self.of(&COILS), self.target(Wanted::Bool)),
             2 => when(self.expression(Wanted::Bool, 3)),
@@ -166,7 +223,9 @@ impl Choices {
                 let wanted = self.wanted();
                 assign(self.target(wanted), self.expression(wanted, 3))
             }
-            4 | 5 => {
+            4 => self.function_box(),
+            5 => statements(self.statements(2)),
+            6 | 7 => {
                 let first = self.branch(depth - 1);
                 parallel([vec![first], self.list(2, |choices| choices.branch(depth - 1))].concat())
             }
@@ -206,8 +265,28 @@ impl Choices {
         ];
         let more = if self.below(3) == 2 { self.list(4, Self::variable) } else { vec![] };
         let program = program([usual, more].concat(), self.list(4, Self::rung));
+        let program = with_function(program);
         if self.below(4) == 1 { imported(program) } else { program }
     }
+}
+
+fn statements(statements: Vec<Statement>) -> Element {
+    Element { kind: ElementKind::Statements(statements), span: span("statements") }
+}
+
+/// The program with a function `twice` of its own.
+fn with_function(mut program: Program) -> Program {
+    let result = Some(ladder::TypeReference::of_name(name("INT")));
+    let value = binary(read("IN"), BinaryOperator::Add, read("IN"));
+    let unit = ladder::Unit {
+        kind: ladder::UnitKind::Function { result },
+        name: name("twice"),
+        variables: vec![input("IN").typed("INT")],
+        rungs: vec![rung(vec![assign("twice", value)])],
+        span: span("twice"),
+    };
+    program.units.insert(0, unit);
+    program
 }
 
 /// Elements and wires of a circuit as drawn.
@@ -254,8 +333,8 @@ proptest! {
         prop_assert_eq!(checked.is_none(), diagnostics.iter().any(Diagnostic::is_error), "{:?}", diagnostics);
         if let Some(checked) = checked {
             let drawn: Vec<_> =
-                program.units[0].rungs.iter().filter(|rung| rung.enabled).map(|rung| drawn(&rung.circuit)).collect();
-            let kept: Vec<_> = checked.units()[0].rungs.iter().map(|rung| kept(&rung.circuit)).collect();
+                program.units[1].rungs.iter().filter(|rung| rung.enabled).map(|rung| drawn(&rung.circuit)).collect();
+            let kept: Vec<_> = checked.units()[1].rungs.iter().map(|rung| kept(&rung.circuit)).collect();
             prop_assert_eq!(drawn, kept);
         }
     }
