@@ -161,3 +161,123 @@ rung
          3  1 2 | 4    2    1 1",
     );
 }
+
+#[test]
+fn a_structure_out_of_range_reads_as_zeros_and_is_not_written() {
+    follows(
+        "type point : struct x : INT := 4 y : REAL := 0.5 end_struct
+program p
+input i, k : INT
+output ok
+var pts : array [0..1] of point
+rung
+  {pts[k] := pts[i];} (ok)",
+        "ms i k | pts[0].x pts[0].y pts[1].x pts[1].y ok #fault
+         0  1 0 | 4        0.5      4        0.5      1  0
+         1  1 2 | 4        0.5      4        0.5      0  1
+         2  2 1 | 4        0.5      0        0        0  1
+         3  0 1 | 4        0.5      4        0.5      1  1",
+    );
+}
+
+#[test]
+fn a_reference_to_no_element_reads_as_zero_and_loses_what_is_written() {
+    follows(
+        "function takes : INT
+inout n : INT
+rung
+  {takes := n * 10; n := n + 1; takes := takes + n;}
+program p
+input a
+input i : INT
+output x : INT
+output ok, boxed
+var l : array [0..1] of INT := [3, 5]
+rung
+  a {x := takes(n := l[i])} (ok)
+rung
+  a takes(n := l[i]) (boxed)",
+        "ms a i | x  l[0] l[1] ok boxed #fault
+         0  1 0 | 34 5    5    1  1     0
+         1  0 9 | 34 5    5    0  0     0
+         2  1 1 | 56 5    7    1  1     0
+         3  1 2 | 0  5    7    0  0     1",
+    );
+}
+
+#[test]
+fn a_fault_inside_of_a_function_takes_no_power_from_its_caller() {
+    follows(
+        "global l : array [0..1] of INT := [3, 5]
+function looks : INT
+input i : INT
+rung
+  {looks := l[i] + 1}
+program p
+input a
+input i : INT
+output x : INT
+output ok, more
+rung
+  a {x := looks(i)} (ok)
+rung
+  {looks(i) > 3} (more)",
+        "ms a i  | x ok more #fault
+         0  1 0  | 4 1  1    0
+         1  0 1  | 4 0  1    0
+         2  0 -1 | 4 0  0    1
+         3  1 -1 | 1 1  0    1",
+    );
+}
+
+#[test]
+fn what_is_computed_for_nothing_is_no_fault_and_has_no_effect() {
+    follows(
+        "global calls : INT
+global l : array [0..1] of INT := [3, 5]
+function counts : INT
+input i : INT
+rung
+  {calls := calls + 1; counts := l[i];}
+program p
+input a
+input i : INT
+output x : INT
+output q
+rung
+  a {x := counts(i)}
+rung
+  a {counts(i) > 4} (q)
+rung
+  {IF a THEN x := x + 1; ELSIF counts(i) = 5 THEN x := 0; END_IF;}",
+        "ms a i | x calls q #fault
+         0  1 0 | 4 2     0 0
+         1  1 1 | 6 4     1 0
+         2  0 0 | 6 5     0 0
+         3  0 1 | 0 6     0 0
+         4  1 7 | 1 8     0 1",
+    );
+}
+
+#[test]
+fn an_index_is_no_fault_where_a_function_that_uses_it_is_not_called() {
+    follows(
+        "global l : array [0..1] of INT := [3, 5]
+function looks : INT
+input i : INT
+rung
+  {looks := l[i]}
+program p
+input a
+input i : INT
+output x : INT
+rung
+  a {x := looks(i)}
+rung
+  a looks(i := i, OUT => x)",
+        "ms a i | x #fault
+         0  1 1 | 5 0
+         1  0 9 | 5 0
+         2  1 9 | 0 1",
+    );
+}

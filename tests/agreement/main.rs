@@ -5,6 +5,7 @@ mod boxes;
 mod elements;
 mod examples;
 mod faults;
+mod guards;
 mod jumps;
 mod random;
 mod register_machine;

@@ -304,3 +304,87 @@ rung behind
          18 0 1 | 2    1    1",
     );
 }
+
+#[test]
+fn blocks_are_called_in_loops_and_keep_a_memory_each() {
+    follows(
+        "function_block edges
+input x
+output n : INT
+rung
+  ^x {n := n + 1}
+function_block all
+input a, b
+output sum : INT
+var fb : array [0..1] of edges
+var i : INT
+rung
+  {fb[0](x := a); fb[1](x := b); sum := 0; FOR i := 0 TO 1 DO sum := sum * 10 + fb[i].n; END_FOR;}
+rung
+  {FOR i := 0 TO 2 DO fb[1](x := i = 1); END_FOR;}
+program p
+input a, b
+var all_1 : all
+rung
+  {all_1(a := a, b := b);}",
+        "ms a b | all_1.sum
+         0  1 0 | 10
+         1  1 1 | 12
+         2  0 0 | 13
+         3  1 1 | 25",
+    );
+}
+
+#[test]
+fn an_instance_may_be_given_as_a_reference() {
+    follows(
+        "function_block counts
+input x
+output n : INT
+rung
+  ^x {n := n + 1}
+function_block twice
+input x
+inout c : counts
+rung
+  x c()
+rung
+  /x c()
+program p
+input a
+var shared : counts
+var fb : twice
+rung
+  a fb(c := shared)
+rung
+  a shared()",
+        "ms a | shared.n
+         0  0 | 1
+         1  1 | 3
+         2  1 | 4
+         3  0 | 5",
+    );
+}
+
+#[test]
+fn a_register_is_declared_by_its_use_and_shared_by_all() {
+    follows(
+        "registers(hreg := 4)
+function_block stores
+input x : WORD
+rung
+  {hreg[1] := x}
+program first
+var fb : stores
+rung
+  fb(x := ireg[2])
+program second
+input i : INT
+rung
+  {oreg[0] := hreg[i]}",
+        "ms ireg[2] second.i | hreg[1] oreg[0] #fault
+         0  7       1        | 7       7       0
+         1  8       0        | 8       0       0
+         2  9       4        | 9       0       1",
+    );
+}

@@ -322,3 +322,34 @@ fn names_too_long_for_the_page_are_cut() {
         ],
     );
 }
+
+#[test]
+fn units_statements_and_function_boxes() {
+    let source = "\
+type colour : (red, green := 4, blue)
+type point : struct x, y : REAL end_struct
+registers(hreg := 64)
+global total : DINT
+global const limit : INT := 90
+task fast(interval := 10ms, priority := 1)
+
+program control with fast
+input start : BOOL at %IX0.0
+var timers : array [1..3] of TON := [3()]
+rung boxes
+  start timers[i + 1](PT := T#5s) ADD(EN := start, IN1 := total, IN2 := 5, OUT => rows[total, 0]) SCALE(x := 3).ENO (done[2])
+rung text
+  start {IF total > limit AND start AND NOT done[1] AND timers[2].Q AND timers[3].Q OR another_name_that_is_long THEN
+    total := total + 1; t1(IN := TRUE, 5, Q => done[3]); ELSE RETURN; END_IF;
+    CASE total OF 1, 3..5: total := 0; END_CASE; FOR n := 0 TO 9 BY 3 DO rows[n, 0] := n; END_FOR;}
+function scale : REAL
+input x : INT
+rung
+  {scale := INT_TO_REAL(x) * 0.1;}
+program other : control
+";
+    let parsed = rung::frontend::native::parse(&rung::source::Source::new("units.rung", source));
+    assert_eq!(parsed.diagnostics, []);
+    golden_of("units", 100, &parsed.program);
+    compare("units.svg", &svg(&parsed.program));
+}

@@ -307,6 +307,20 @@ fn what_is_nested_deeper_than_any_front_end_allows_ends_in_a_box() {
 }
 
 #[test]
+fn many_and_deep_statements_end_in_a_line_that_says_so() {
+    let deep = (0..600).fold(assign("core", number(1)), |inner, _| when(read("a"), vec![inner]));
+    let many = (0..100_000).map(|index| assign(&format!("b{index}"), number(1))).collect();
+    for list in [vec![deep], many] {
+        let program = program("p", vec![], vec![rung("r", "", vec![statements(list)])]);
+        let picture = text(&program, &TextOptions { width: 40 });
+        assert!(picture.lines().count() < 40, "{picture}");
+        assert!(picture.contains("│ … "), "{picture}");
+        assert_fits(&picture, 40);
+        assert_well_formed(&svg(&program));
+    }
+}
+
+#[test]
 fn a_rung_whose_wires_would_fill_pages_says_so() {
     let long = (0..5000).map(|index| open(&format!("a{index}"))).collect();
     let mut branches = vec![long];

@@ -47,6 +47,69 @@ rung r1 \"title\"  -- the header
 }
 
 #[test]
+fn comments_of_types_units_and_statements_print_where_they_stood() {
+    let text = "\
+-- Colours.
+type colour : (  -- of the lamp
+  red,  -- stop
+  -- go
+  green := 4
+) := red
+
+type point : struct  -- a place
+  x : REAL  -- metres
+  -- and
+  y : REAL
+  -- no more
+end_struct
+
+-- The machine.
+registers(hreg := 64)  -- few
+
+global total : DINT  -- of all
+
+-- The quick one.
+task fast(interval := T#10ms)  -- often
+
+-- What is done.
+program control with fast  -- always
+
+rung
+  {  -- first
+    x := 1;  -- one
+    -- then
+    IF a THEN  -- if so
+      y := 2;  -- two
+    ELSE
+      -- if not
+      z := 3;
+      -- before the end
+    END_IF;  -- done
+    CASE n OF  -- which
+      1, 2:  -- low
+        y := 2;
+      -- high
+      3..5:
+        y := 3;  -- three
+    ELSE
+      y := 4;
+    END_CASE;
+    -- nothing more
+  }  -- behind
+
+-- Computes.
+function f : INT  -- a number
+
+rung
+  {f := 1;}  -- always one
+
+-- Once more.
+program again : control  -- the same
+";
+    assert_eq!(print_and_check(&parse_well(text)), text);
+}
+
+#[test]
 fn comments_in_odd_places_are_kept_in_order() {
     let texts = [
         "-- only",
@@ -62,6 +125,13 @@ fn comments_in_odd_places_are_kept_in_order() {
         "rung\n > -- a\n n -- b\n > -- c\n | - -- d\n > n >",
         "rung\n [ { a -- in braces\n } | b ] (c)",
         "rung\n a\n -- own\n | -- behind\n b",
+        "type -- a\n t -- b\n : -- c\n ( -- d\n a -- e\n := -- f\n 1 -- g\n , -- h\n b -- i\n ) -- j\n := -- k\n a -- l\n",
+        "type t : struct -- a\n x -- b\n , -- c\n y -- d\n : -- e\n INT -- f\n end_struct -- g\n type u : INT",
+        "registers -- a\n ( -- b\n ) -- c\n global -- d\n const -- e\n x -- f\n task -- g\n t -- h\n ( -- i\n ) -- j\n",
+        "program p -- a\n with -- b\n t -- c\n program q -- d\n : -- e\n p -- f\n",
+        "rung\n { -- a\n IF -- b\n a -- c\n THEN -- d\n ELSIF -- e\n b -- f\n THEN -- g\n c := 1 -- h\n ; -- i\n ELSE -- j\n d -- k\n ( -- l\n x -- m\n ) -- n\n ; -- o\n END_IF -- p\n ; -- q\n } -- r\n",
+        "rung\n {f( -- a\n x -- b\n , -- c\n y => z -- d\n );} {f( -- e\n x -- f\n )} {x := -- g\n 1 -- h\n } {x -- i\n := 1; -- j\n}",
+        "rung\n {CASE -- a\n x OF -- b\n 1 -- c\n .. -- d\n 2 -- e\n , -- f\n 3 -- g\n : -- h\n 4: -- i\n EXIT; -- j\n ELSE -- k\n END_CASE -- l\n}",
     ];
     for text in texts {
         print_and_check(&parse_well(text));

@@ -298,6 +298,146 @@ fn names_before_parentheses_call_functions() {
     }
 }
 
+/// The statements in `{…}`.
+fn statements(text: &str) -> Vec<String> {
+    match element(&format!("{{{text}}}")) {
+        ElementKind::Statements(statements) => statements.iter().map(statement_brief).collect(),
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+#[test]
+fn every_statement() {
+    let cases = [
+        ("a.b[1] := c + 1;", "a.b[1] := (c + 1);"),
+        ("t1(IN := a AND b, PT := T#1s, Q => c[2]);", "call t1<IN: (a AND b), PT: Time(1000000000), Q > c[2]>;"),
+        ("MOD(a, 2, OUT => b);", "call MOD<: a, : 2, OUT > b>;"),
+        ("`NOT`(EN := a, IN := b, ENO => c);", "call NOT<EN: a, IN: b, ENO > c>;"),
+        ("a(); b[i].c();", "call a<>; call b[i].c<>;"),
+        ("if a then b := 1; end_if", "if a (b := 1;) else ()"),
+        (
+            "IF a = 1 THEN EXIT; ELSIF b THEN ; ELSIF c THEN RETURN; ELSE d := 1; e := 2; END_IF;",
+            "if (a = 1) (exit;) if b () if c (return;) else (d := 1; e := 2;)",
+        ),
+        (
+            "CASE a + 1 OF 1: b := 1; 2, limit..limit + 2, -3: c := 1; d(); colour#red, red: ELSE e := 1; END_CASE;",
+            "case (a + 1) on 1 (b := 1;) on 2 limit..(limit + 2) (-3) (c := 1; call d<>;) on colour#red red () else (e := 1;)",
+        ),
+        ("CASE a OF END_CASE;", "case a  else ()"),
+        ("FOR i := 0 TO n - 1 DO a[i] := 0; END_FOR;", "for i 0 (n - 1)  (a[i] := 0;)"),
+        ("FOR i := 9 TO 0 BY -1 DO IF a[i] THEN EXIT; END_IF; END_FOR;", "for i 9 0 (-1) (if a[i] (exit;) else ())"),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(statements(text).join(" "), expected, "{text}");
+    }
+}
+
+#[test]
+fn types_and_initial_values() {
+    let program = parse_well(
+        "type a : INT := 5\ntype b : array [0..9, -1..n] of a := [1, 2(3), 4((x := 1)), 5(), [6]]\n\
+         type c : (red, green := 4) := green\ntype d : USINT (one, two)\n\
+         type e : struct x, y : REAL := (1.5); z : c := c#red end_struct\nvar v : e := (x := 1.0, z := `c`#`red`)",
+    );
+    let ty = |ty: &TypeReference| {
+        let bounds = |dimension: &Dimension| format!("{}..{} ", grouped(&dimension.first), grouped(&dimension.last));
+        format!("{}{}", ty.dimensions.iter().map(bounds).collect::<String>(), ty.name.text)
+    };
+    let value =
+        |value: &Option<Expression>| value.as_ref().map_or(String::new(), |value| format!(" := {}", grouped(value)));
+    let brief: Vec<String> = program
+        .types
+        .iter()
+        .map(|declaration| match &declaration.kind {
+            TypeKind::Alias { ty: alias, initial } => format!("{}{}", ty(alias), value(initial)),
+            TypeKind::Structure(fields) => {
+                let field = |field: &Field| format!("{}: {}{};", field.name.text, ty(&field.ty), value(&field.initial));
+                fields.iter().map(field).collect()
+            }
+            TypeKind::Enumeration { base, values, initial } => {
+                let values = values.iter().map(|(name, number)| format!("{}{};", name.text, value(number)));
+                format!("{base:?} {}{initial:?}", values.collect::<String>())
+                    .replace(|c: char| c.is_ascii_digit() || c == '.', "")
+            }
+        })
+        .collect();
+    assert_eq!(
+        brief,
+        [
+            "INT := 5",
+            "0..9 (-1)..n a := [1, 2 x 3, 4 x (x: 1), 5 x , [6]]",
+            "None red;green := ;Some(Name { text: \"green\", span:  })",
+            "Some(Name { text: \"USINT\", span:  }) one;two;None",
+            "x: REAL := Real { value: 1.5, ty: None };y: REAL := Real { value: 1.5, ty: None };z: c := c#red;",
+        ]
+    );
+    let initial = program.units[0].variables[0].initial.as_ref().map(grouped);
+    assert_eq!(initial.as_deref(), Some("(x: Real { value: 1.0, ty: None }, z: c#red)"));
+}
+
+#[test]
+fn a_file_declares_units_tasks_and_instances() {
+    let program = parse_well(
+        "registers(ireg := 16, timers := n + 1)\nglobal a, b : INT\nglobal const c := 1\n\
+         task fast(interval := 10ms, priority := 1)\ntask slow(interval := T#1s)\ntask idle\n\
+         program main with fast\ninput i\nrung\n i\nprogram other\nfunction_block fb\ninout x : INT\ntemp y\n\
+         rung\n x\nrung\n y\nfunction f : array [1..2] of INT\nfunction g\nprogram m1 : main with slow\nprogram m2 : main",
+    );
+    assert_eq!(program.name.text, "test", "of several programs none gives its name");
+    let settings: Vec<String> = program
+        .registers
+        .iter()
+        .flat_map(|registers| &registers.settings)
+        .map(|setting| format!("{}: {}", setting.name.text, grouped(&setting.value)))
+        .collect();
+    assert_eq!(settings, ["ireg: 16", "timers: (n + 1)"]);
+    let globals: Vec<_> =
+        program.globals.iter().map(|variable| (variable.class, variable.name.text.as_str())).collect();
+    use VariableClass::{Constant, InOut, Input, Memory, Temporary};
+    assert_eq!(globals, [(Memory, "a"), (Memory, "b"), (Constant, "c")]);
+    let tasks: Vec<String> = program
+        .tasks
+        .iter()
+        .map(|task| {
+            let value = |value: &Option<Expression>| value.as_ref().map_or("none".to_owned(), grouped);
+            format!("{} {} {}", task.name.text, value(&task.interval), value(&task.priority))
+        })
+        .collect();
+    assert_eq!(tasks, ["fast Time(10000000) 1", "slow Time(1000000000) none", "idle none none"]);
+    let units: Vec<String> = program
+        .units
+        .iter()
+        .map(|unit| {
+            let kind = match &unit.kind {
+                UnitKind::Program { task } => format!("program {}", task.as_ref().map_or("", |task| &task.text)),
+                UnitKind::FunctionBlock => "block".to_owned(),
+                UnitKind::Function { result } => format!("function {}", result.as_ref().map_or("", |ty| &ty.name.text)),
+            };
+            let classes: Vec<_> = unit.variables.iter().map(|variable| variable.class).collect();
+            format!("{kind} {} {classes:?} {}", unit.name.text, unit.rungs.len())
+        })
+        .collect();
+    assert_eq!(
+        units,
+        [
+            format!("program fast main {:?} 1", [Input]),
+            "program  other [] 0".to_owned(),
+            format!("block fb {:?} 2", [InOut, Temporary]),
+            "function INT f [] 0".to_owned(),
+            "function  g [] 0".to_owned(),
+        ]
+    );
+    let instances: Vec<_> = program
+        .instances
+        .iter()
+        .map(|one| {
+            (one.name.text.as_str(), one.program.text.as_str(), one.task.as_ref().map(|task| task.text.as_str()))
+        })
+        .collect();
+    assert_eq!(instances, [("m1", "main", Some("slow")), ("m2", "main", None)]);
+    assert_eq!(parse_well("function f\nprogram only").name.text, "only");
+}
+
 #[test]
 fn operators_bind_as_the_standard_says() {
     let cases = [

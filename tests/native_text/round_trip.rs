@@ -171,3 +171,33 @@ fn expressions_print_with_as_few_parentheses_as_they_need() {
         canonical(&text);
     }
 }
+
+#[test]
+fn long_statements_break_over_lines() {
+    canonical(
+        "\
+program p
+
+rung
+  a {x := 1;} {f(x);} {f(x)} {;}
+  { a_call_with_many_arguments(
+      first_argument_of_the_call := first_value,
+      second_argument_of_the_call := second_value,
+      third => x
+    );
+    x := 2;
+  } b
+
+rung
+  a
+  [ { x := 1;
+      y := 2;
+    }
+  | { IF a THEN
+        x := 1;
+      END_IF;
+    }
+  ] b
+",
+    );
+}

@@ -180,7 +180,7 @@ impl Oracle<'_> {
 
     /// The variables of a function for one call. No two calls can be told apart, for there are no memories in functions.
     fn fresh(&mut self, unit: UnitId) -> Frame {
-        Frame { id: FrameId::default(), ..self.frame(self.checked.unit(unit).variables(), &[]) }
+        self.frame(self.checked.unit(unit).variables(), &[]).numbered(FrameId::default())
     }
 
     /// What a function gives for its inputs. If it is not executed, it writes nothing elsewhere.

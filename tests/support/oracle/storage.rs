@@ -70,13 +70,20 @@ pub(super) struct FrameId(pub(super) u32);
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frame {
     pub(super) id: FrameId,
-    pub(super) variables: Rc<[(VariableId, Storage)]>,
+    /// In order of the variables.
+    variables: Rc<[(VariableId, Storage)]>,
 }
 
 impl Frame {
     /// The storage of a variable, if it is one of these.
     pub(super) fn get(&self, id: VariableId) -> Option<&Storage> {
-        self.variables.iter().find(|(variable, _)| *variable == id).map(|(_, storage)| storage)
+        let place = self.variables.binary_search_by_key(&id, |(variable, _)| *variable).ok()?;
+        Some(&self.variables[place].1)
+    }
+
+    /// The same under another number.
+    pub(super) fn numbered(self, id: FrameId) -> Self {
+        Self { id, ..self }
     }
 
     /// The same, where some variables stand for what the caller says.
@@ -181,7 +188,9 @@ impl Oracle<'_> {
             let initial = starts_with(given, &Step::Variable(id)).unwrap_or(&self.checked.variable(id).initial);
             (id, self.variable(id, initial))
         };
-        Frame { id, variables: variables.map(storage).collect() }
+        let mut variables: Vec<(VariableId, Storage)> = variables.map(storage).collect();
+        variables.sort_by_key(|(id, _)| *id);
+        Frame { id, variables: variables.into() }
     }
 
     /// The storage of a new variable; of one at an address that of the first variable there.

@@ -1,7 +1,7 @@
 //! Random networks: series, parallel, nodes, and calls with all that can be wired to them.
 
 use rung::elementary::Elementary;
-use rung::ladder::library::{Pin, StandardBlock, Takes};
+use rung::ladder::library::{Pin, Takes};
 use rung::ladder::{
     Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
     Reference, Wire,
@@ -148,7 +148,7 @@ impl Generator {
 
     fn call(&mut self, instance: &Instance, depth: usize) -> Element {
         let block = instance.block;
-        let mut arguments = self.wired_inputs(block, depth);
+        let mut arguments = self.wired_inputs(instance, depth);
         for pin in block.outputs() {
             if self.dice.percent(20)
                 && let Some(target) = self.target(pin.ty)
@@ -171,14 +171,15 @@ impl Generator {
     }
 
     /// With the first BOOL input among them, or without one, the power on the left is EN.
-    fn wired_inputs(&mut self, block: StandardBlock, depth: usize) -> Vec<Argument> {
+    fn wired_inputs(&mut self, instance: &Instance, depth: usize) -> Vec<Argument> {
+        let block = instance.block;
         let enable = self.dice.percent(25);
         let mut arguments = Vec::new();
         let power = block.inputs().iter().position(|pin| pin.ty == Elementary::Bool);
         for (index, pin) in block.inputs().iter().enumerate() {
             let wire = match (index, pin.ty) {
                 _ if pin.takes == Takes::Reference => Wire::Value(self.register()),
-                _ if pin.takes == Takes::Constant => Wire::Value(self.constant(pin)),
+                _ if pin.takes == Takes::Constant => Wire::Value(constant(pin, instance)),
                 _ if Some(index) == power && !enable => continue,
                 _ if Some(index) == power => self.bool_wire(depth),
                 (_, Elementary::Bool) if self.dice.percent(30) => continue,
@@ -188,7 +189,7 @@ impl Generator {
                     // A constant beyond the range is an error, also one that is computed.
                     let variable = self.dice.percent(30).then(|| self.place(ty, Purpose::ReadVariable)).flatten();
                     Wire::Value(variable.map_or_else(
-                        || self.constant(pin),
+                        || self.small_constant(pin),
                         |reference| drawing::expression(ExpressionKind::Read(reference)),
                     ))
                 }
@@ -205,9 +206,8 @@ impl Generator {
         drawing::read(&format!("{REGISTERS}[{}]", self.dice.below(REGISTER_COUNT as usize - LONGEST_CHAIN)))
     }
 
-    fn constant(&mut self, pin: &Pin) -> Expression {
-        let (least, greatest) = pin.range.expect("a pin that takes a constant says which");
-        let numbers: Vec<i64> = (least..=greatest).take(LONGEST_CHAIN).collect();
+    fn small_constant(&mut self, pin: &Pin) -> Expression {
+        let numbers = small_constants(pin);
         drawing::integer((*self.dice.pick(&numbers)).into())
     }
 
@@ -220,4 +220,16 @@ impl Generator {
         self.in_pin = around;
         Wire::Circuit(Circuit { branches, span: NOWHERE })
     }
+}
+
+/// The same in every call of an instance: what kind of timer it is does not change.
+fn constant(pin: &Pin, instance: &Instance) -> Expression {
+    let numbers = small_constants(pin);
+    let chosen = instance.name.bytes().map(usize::from).sum::<usize>() % numbers.len();
+    drawing::integer(numbers[chosen].into())
+}
+
+fn small_constants(pin: &Pin) -> Vec<i64> {
+    let (least, greatest) = pin.range.expect("a pin that takes a constant says which");
+    (least..=greatest).take(LONGEST_CHAIN).collect()
 }

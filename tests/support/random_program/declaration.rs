@@ -2,7 +2,7 @@
 
 use rung::elementary::Elementary;
 use rung::ladder::library::StandardBlock;
-use rung::ladder::{Address, Area, Root, TypeReference, Variable, VariableClass, Width};
+use rung::ladder::{Address, Area, ArrayItem, ExpressionKind, Root, TypeReference, Variable, VariableClass, Width};
 
 use super::{Entry, Generator, Instance};
 use crate::support::drawing;
@@ -32,7 +32,11 @@ impl Generator {
             }
         }
         let registers = drawing::array(Memory, REGISTERS, REGISTER_COUNT, Elementary::Word);
-        self.program.units[0].variables.push(registers);
+        // Something that shifts can move.
+        let pattern =
+            ArrayItem { repeat: Some(drawing::integer(REGISTER_COUNT.into())), value: Some(drawing::integer(0x5A5A)) };
+        let initial = Some(drawing::expression(ExpressionKind::Array(vec![pattern])));
+        self.program.units[0].variables.push(Variable { initial, ..registers });
         if self.dice.percent(8) {
             // Names that need back quotes, or look like something else.
             let odd = *self.dice.pick(&["Füllstand 1", "rung", "S", "T", "x.y", "AND", "1st"]);
