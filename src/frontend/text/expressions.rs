@@ -271,20 +271,21 @@ impl Reader<'_> {
 
     pub(super) fn path(&mut self, expected: &str) -> Parse<Path> {
         let start = self.token.span.start;
-        let root = match self.token.kind {
+        let root = self.root(expected)?;
+        self.steps_from(root, start, false)
+    }
+
+    fn root(&mut self, expected: &str) -> Parse<Root> {
+        Ok(match self.token.kind {
             Kind::Address => Root::Address(self.address()),
             _ => Root::Name(self.name(expected)?),
-        };
-        self.steps_from(root, start, false)
+        })
     }
 
     /// A name or an address in a circuit: a bracket that does not touch it is a parallel circuit.
     pub(crate) fn reference_in_circuit(&mut self, expected: &str) -> Parse<Reference> {
         let start = self.token.span.start;
-        let root = match self.token.kind {
-            Kind::Address => Root::Address(self.address()),
-            _ => Root::Name(self.name(expected)?),
-        };
+        let root = self.root(expected)?;
         Ok(self.steps_from(root, start, true)?.reference)
     }
 

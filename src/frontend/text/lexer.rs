@@ -262,3 +262,36 @@ impl<'a> Lexer<'a> {
 fn starts_value(character: char) -> bool {
     character == '`' || starts_name(character)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::token::Keyword;
+    use super::*;
+
+    fn kinds(text: &str, dialect: Dialect) -> Vec<Kind> {
+        let mut lexer = Lexer::new(text, dialect);
+        std::iter::repeat_with(|| lexer.token().kind).take_while(|kind| *kind != Kind::End).collect()
+    }
+
+    #[test]
+    fn each_dialect_has_its_comments_texts_and_keywords() {
+        let text = "(* a (* b *) c *) // d\n{e} /* f */ 'it$'s' end_var input";
+        let comments = [Kind::Comment; 4];
+        let rest = [Kind::Text, Kind::Keyword(Keyword::EndVar), Kind::Name];
+        assert_eq!(kinds(text, Dialect::StructuredText), [&comments[..], &rest].concat());
+        assert_eq!(kinds("(* a (* b *)", Dialect::StructuredText), [Kind::UnclosedComment]);
+        let native = [Kind::Comment, Kind::Keyword(Keyword::Input), Kind::Name, Kind::Slash, Kind::Slash];
+        assert_eq!(kinds("-- a\ninput end_var //", Dialect::Native), native);
+    }
+
+    #[test]
+    fn values_of_enumerations_and_ranges_are_told_from_numbers() {
+        let text = "colour#red `my type`#`light red` größe#mod 0..9 w.3..5";
+        let expected = [
+            [Kind::Literal; 3].as_slice(),
+            &[Kind::Literal, Kind::Range, Kind::Literal],
+            &[Kind::Name, Kind::Dot, Kind::Literal, Kind::Range, Kind::Literal],
+        ];
+        assert_eq!(kinds(text, Dialect::Native), expected.concat());
+    }
+}
