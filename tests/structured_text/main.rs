@@ -4,6 +4,7 @@
 mod constructs;
 mod hostile;
 mod random;
+mod units;
 
 #[path = "../support"]
 mod support {
