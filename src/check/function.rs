@@ -24,6 +24,9 @@ pub(super) struct Actual {
     pub(super) span: Span,
 }
 
+/// A function, its operands with their places, and the type of its result.
+type TypedCall = (Function, Vec<(Expression, Span)>, Elementary);
+
 impl Checker<'_> {
     /// A call. Its type is `expected`, if its operands leave that open.
     pub(super) fn function(
@@ -170,7 +173,7 @@ impl Checker<'_> {
         name: &Name,
         actuals: Vec<Actual>,
         expected: Option<Elementary>,
-    ) -> Option<(Function, Vec<(Expression, Span)>, Elementary)> {
+    ) -> Option<TypedCall> {
         let standard = match function {
             Function::Standard(function) => function,
             Function::Convert { from, to } => {

@@ -532,6 +532,9 @@ pub enum ExpressionKind {
     },
 }
 
+/// Ranges of values, both ends included.
+type Labels = Vec<(Value, Value)>;
+
 /// One statement, which is executed where it stands.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Statement {
@@ -563,7 +566,7 @@ pub enum Statement {
         /// An integer, computed once.
         selector: Expression,
         /// In order: ranges, both ends included, and what they are for.
-        branches: Vec<(Vec<(Value, Value)>, Vec<Statement>)>,
+        branches: Vec<(Labels, Vec<Statement>)>,
         /// What is executed if none matches.
         otherwise: Vec<Statement>,
     },

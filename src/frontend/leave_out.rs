@@ -121,8 +121,11 @@ impl Leaver<'_> {
                 missing.note(&format!("the function {text}"), element.span);
                 lacks = true;
             }
-            Use::Block(Name { text, .. }, _) if !known.has_type(text) => {
-                missing.note(&format!("the block {text}"), element.span);
+            // Where the instance is declared, its declaration was counted.
+            Use::Block(Name { text, .. }, instance) if !known.has_type(text) => {
+                if !instance.as_name().is_some_and(|name| gone.contains(&name.key())) {
+                    missing.note(&format!("the type {text}"), element.span);
+                }
                 lacks = true;
             }
             mentioned => lacks |= uses::root_key(mentioned).is_some_and(|root| gone.contains(&root)),

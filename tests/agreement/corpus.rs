@@ -10,7 +10,7 @@ use rung::check::{Checked, check};
 use rung::diagnostic::{Code, Diagnostic, any_error};
 use rung::engine::interp::Interpreter;
 use rung::engine::jit::Jit;
-use rung::frontend::{self, native, plcopen, structured_text};
+use rung::frontend::{self, leave_out, native, plcopen, structured_text};
 use rung::ladder::Program;
 use rung::lower::lower;
 use rung::opt;
@@ -67,15 +67,19 @@ impl Row {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let bytes = std::fs::read(file).expect("a file that can be read");
         let source = Source::decode(name.clone(), &bytes).map_err(|undecoded| undecoded.1).expect("text");
-        let parsed = frontend::parse(&source);
-        let (checked, more) = check(&parsed.program);
+        let mut parsed = frontend::parse(&source);
         let rungs = parsed.program.rungs().count();
         let mut said = parsed.diagnostics;
+        said.extend(leave_out(&mut parsed.program));
+        let (checked, more) = check(&parsed.program);
         said.extend(more);
         let mut failures = String::new();
+        let (missing, errors): (Vec<&Diagnostic>, Vec<&Diagnostic>) =
+            said.iter().filter(|problem| problem.is_error()).partition(|problem| problem.code == Code::NotSupported);
         let result = match checked {
-            Some(checked) if !any_error(&said) => {
-                let mut done = Vec::new();
+            Some(checked) if errors.is_empty() => {
+                let mut done: Vec<String> =
+                    missing.iter().map(|problem| format!("without: {};", problem.message)).collect();
                 match engines(&checked) {
                     Ok(()) => done.push("engines".to_owned()),
                     Err(problem) => failures = format!("{name}: {problem}\n"),
@@ -88,15 +92,11 @@ impl Row {
                         }
                     }
                 }
-                done.join(", ")
+                done.join(" ")
             }
             _ => {
-                let errors = said.iter().filter(|problem| problem.is_error());
-                let errors = errors.map(|problem| {
-                    let missing = if problem.code == Code::NotSupported { "" } else { "error: " };
-                    format!("{missing}{}", problem.message)
-                });
-                errors.collect::<Vec<_>>().join("; ")
+                let errors = missing.iter().chain(&errors).map(|problem| problem.message.clone());
+                format!("error: {}", errors.collect::<Vec<_>>().join("; "))
             }
         };
         Self { line: format!("{name:55} {rungs:>5}  {result}"), failures }

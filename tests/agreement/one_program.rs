@@ -70,16 +70,16 @@ fn rungs_are_drawn_and_only_what_ld_has_not_is_structured_text() {
         (written.matches("<LD>").count(), written.matches("<ST>").count())
     };
     let drawn = [
-        "rung [ a | /b ] ^a (c) (S d)",
-        "rung a t(PT := T#1s) (c)\nrung b {n > 3} (d)",
-        "rung a {n := n + 1} {n > 3} (c)",
-        "rung a [ (c) | b (d) ]",
-        "rung a ADD(IN1 := n, IN2 := 1, OUT => n) (c)",
-        "rung a >n> | >n> b (c) | >n> (d)",
-        "rung a >> last\nrung b (c)\nrung last b (d)",
+        "rung\n [ a | /b ] ^a (c) (S d)",
+        "rung\n a t(PT := T#1s) (c)\nrung\n b {n > 3} (d)",
+        "rung\n a {n := n + 1} {n > 3} (c)",
+        "rung\n a [ (c) | b (d) ]",
+        "rung\n a ADD(IN1 := n, IN2 := 1, OUT => n) (c)",
+        "rung\n a >n>\n| >n> b (c)\n| >n> (d)",
+        "rung\n a >> last\nrung\n b (c)\nrung last\n b (d)",
     ];
     for rungs in drawn {
         assert_eq!(bodies(rungs), (1, 0), "{rungs}");
     }
-    assert_eq!(bodies("rung a {IF b THEN n := 1; END_IF;} (c)"), (0, 1));
+    assert_eq!(bodies("rung\n a {IF b THEN n := 1; END_IF;} (c)"), (0, 1));
 }

@@ -13,6 +13,7 @@ mod rungs;
 pub(in crate::frontend) mod uses;
 mod words;
 
+pub(in crate::frontend) use calls::is_iec;
 pub(in crate::frontend) use declarations::{Instances, instances, used};
 pub(in crate::frontend) use names::Names;
 pub(in crate::frontend) use order::of_units;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::super::types::Signatures;
+use crate::frontend::structured_text::print::is_iec;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{BlockCall, Program, Root, Step, Unit, UnitKind, Variable, VariableClass, key};
@@ -97,7 +98,8 @@ pub(super) fn callee(scope: &Scope<'_>, call: &BlockCall) -> Option<Callee> {
     let mut callee = match scope.unit(&ty) {
         Some(unit) => of_unit(unit, false),
         None => {
-            let block = StandardBlock::from_name(&ty)?;
+            // Other tools have no register machine; writing statements says so.
+            let block = StandardBlock::from_name(&ty).filter(|block| is_iec(*block))?;
             let names = |pins: &[crate::ladder::library::Pin]| pins.iter().map(|pin| pin.name.to_owned()).collect();
             Callee {
                 name: block.name().to_owned(),
