@@ -72,6 +72,8 @@ codes! {
     BadAddress = 206 Error "an address that cannot be read",
     DuplicateClause = 207 Error "said twice",
     UnboundedLoop = 208 Error "a loop without a constant number of times",
+    BadXml = 221 Error "XML that cannot be read",
+    BadElement = 222 Error "an element that lacks what it needs",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
@@ -105,12 +107,18 @@ codes! {
     NoMemoryHere = 512 Error "something that remembers, in a function",
     BadResource = 513 Error "a task, program instance or resource that cannot be",
     MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
+    DanglingConnection = 521 Error "a wire from an element that there is not",
+    DuplicateId = 522 Error "two elements of one id",
+    PowerCycle = 523 Error "power that runs in a circle",
+    NotConnected = 524 Error "an element that no wire reaches",
+    NeverRuns = 525 Warning "a program that no task runs",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",
     TooManyWarnings = 603 Warning "too many warnings",
     TooManyElements = 604 Error "arrays with too many elements",
     TooLargeInlined = 605 Error "too much is called within calls",
+    NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",

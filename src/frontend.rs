@@ -4,6 +4,7 @@
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
 pub mod native;
+pub mod plcopen;
 mod text;
 
 use crate::diagnostic::Diagnostic;
@@ -30,7 +31,10 @@ pub struct Frontend {
 }
 
 /// The formats, the most particular first. The native text comes last and takes whatever the others leave.
-pub const FRONTENDS: &[Frontend] = &[Frontend { name: "Rung text", recognises: |_| true, parse: native::parse }];
+pub const FRONTENDS: &[Frontend] = &[
+    Frontend { name: "PLCopen XML", recognises: plcopen::recognises, parse: plcopen::parse },
+    Frontend { name: "Rung text", recognises: |_| true, parse: native::parse },
+];
 
 /// Reads a source in the format that its content shows.
 pub fn parse(source: &Source) -> Parsed {

@@ -4,6 +4,8 @@
 //! its span to the end, so that a diagnostic, a report or a generated comment can name the line.
 //! This module must never read a file: bytes come in from the caller.
 
+mod encoding;
+
 use std::fmt;
 use std::ops::Range;
 
@@ -69,13 +71,23 @@ impl Source {
         Self { name: name.into(), text, line_starts }
     }
 
-    /// A source from a file's bytes.
+    /// A source from a file's bytes: UTF-8, UTF-16 with a byte order mark, or Latin-1 where an XML header says so.
     ///
     /// # Errors
     /// A source that holds the readable part, with a diagnostic at the first bad byte, when the bytes are not
-    /// UTF-8, hold a NUL, or are more than [`MAXIMUM_BYTES`].
+    /// such text, hold a NUL, or are more than [`MAXIMUM_BYTES`].
     pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Result<Self, Box<(Self, Diagnostic)>> {
         let name = name.into();
+        if bytes.len() <= MAXIMUM_BYTES
+            && let Some((text, whole)) = encoding::other(bytes)
+        {
+            let at = Span::new(text.len(), text.len());
+            if !whole {
+                let problem = Diagnostic::new(Code::NotText, at, "what stands here is not UTF-16 text");
+                return Err(Box::new((Self::new(name, text), problem.hint("save the file as UTF-8"))));
+            }
+            return Self::without_nul(name, text);
+        }
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         if bytes.len() > MAXIMUM_BYTES {
             let problem =
@@ -91,15 +103,16 @@ impl Source {
                     Diagnostic::new(Code::NotText, at, "a byte here is not UTF-8 text").hint("save the file as UTF-8");
                 Err(Box::new((Self::new(name, good), problem)))
             }
-            Ok(text) => match text.find('\0') {
-                None => Ok(Self::new(name, text)),
-                Some(at) => {
-                    let problem = Diagnostic::new(Code::NotText, Span::new(at, at), "a NUL byte stands here")
-                        .hint("this looks like a binary file");
-                    Err(Box::new((Self::new(name, &text[..at]), problem)))
-                }
-            },
+            Ok(text) => Self::without_nul(name, text.to_owned()),
         }
+    }
+
+    fn without_nul(name: String, mut text: String) -> Result<Self, Box<(Self, Diagnostic)>> {
+        let Some(at) = text.find('\0') else { return Ok(Self::new(name, text)) };
+        text.truncate(at);
+        let problem = Diagnostic::new(Code::NotText, Span::new(at, at), "a NUL byte stands here")
+            .hint("this looks like a binary file");
+        Err(Box::new((Self::new(name, text), problem)))
     }
 
     /// The name as the user gave it.

@@ -1,0 +1,171 @@
+//! PLCopen TC6 XML, as OpenPLC Editor, Beremiz, CODESYS and others write it. `docs/plcopen.md` is its reference.
+//!
+//! [`parse`] reads declarations, tasks and the bodies in LD and FBD, whatever the namespace or prefix. A body is a
+//! graph of elements that name those they are wired to: `diagram` reads it, `order` says what runs when, `vertices` says
+//! what each element is in a rung, and `network` makes rungs of it. Syntax only: nothing here judges a type, and types are
+//! looked at only where a wire needs a variable of its own.
+//!
+//! Whatever the bytes, the answer is a program and diagnostics, in bounded memory and time.
+
+mod configuration;
+mod declarations;
+mod diagram;
+mod expression;
+mod network;
+mod order;
+mod report;
+mod rungs;
+mod textual;
+mod types;
+mod vertices;
+mod xml;
+
+use std::collections::HashSet;
+
+use self::report::Report;
+use self::types::Signatures;
+use self::xml::{Document, Node};
+use super::Parsed;
+use crate::diagnostic::Code;
+use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
+use crate::source::{Source, Span};
+
+/// Whether a text is XML, which no other format that is read is; what it lacks as a PLCopen project is then said.
+pub fn recognises(text: &str) -> bool {
+    text.trim_start().starts_with('<')
+}
+
+/// Reads PLCopen XML. After an error it goes on with the next element, and the program holds the others.
+pub fn parse(source: &Source) -> Parsed {
+    let mut program = Program::empty(Origin::Imported, Name::new("plcopen", Span::default()));
+    let mut report = Report::default();
+    match Document::read(source.text()) {
+        Err(problem) => report.push(problem),
+        Ok(document) => {
+            if let Some(root) = document.root() {
+                project(root, &mut program, &mut report);
+            }
+        }
+    }
+    Parsed { program, diagnostics: report.finish() }
+}
+
+/// A POU of the file.
+struct Pou<'d, 'a> {
+    node: Node<'d, 'a>,
+    unit: Unit,
+    /// What it declares of the globals.
+    externals: Vec<Variable>,
+}
+
+fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
+    if root.name() != "project" {
+        let message = format!("this is XML, but no PLCopen project: its outermost element is `<{}>`", root.name());
+        report.error(Code::UnknownFormat, root.span(), message);
+        return;
+    }
+    if let Some(header) = root.child("contentHeader") {
+        program.name = Name::new(header.attribute("name").unwrap_or("plcopen"), header.span());
+    }
+    // Most have the POUs among the types, some beside them.
+    let types = root.child("types");
+    let places = || types.into_iter().chain([root]);
+    let mut declarations = declarations::Reader::new(report);
+    for declared in places().flat_map(|place| place.all("dataTypes")).flat_map(|types| types.all("dataType")) {
+        declarations.data_type(declared);
+    }
+    let mut pous = Vec::new();
+    for node in places().flat_map(|place| place.all("pous")).flat_map(|pous| pous.all("pou")) {
+        pous.extend(declarations.pou(node));
+    }
+    program.globals = declarations.globals(root);
+    let (types, comments) = declarations.finish();
+    program.types = types;
+    program.comments = comments;
+    let idle = configuration::read(root, program, &mut pous, report);
+    check_externals(&pous, &program.globals, report);
+
+    let signatures = Signatures::new(program, pous.iter().map(|pou| &pou.unit));
+    let mut bodies = Vec::new();
+    for pou in &pous {
+        bodies.push(body(pou, &signatures, &mut program.comments, report));
+    }
+    for (mut pou, (rungs, hidden)) in pous.into_iter().zip(bodies) {
+        pou.unit.rungs.extend(rungs);
+        pou.unit.variables.extend(hidden);
+        program.units.push(pou.unit);
+    }
+    let mut programs = program.units.iter().filter(|unit| matches!(unit.kind, UnitKind::Program { .. }));
+    if let (Some(only), None) = (programs.next(), programs.next()) {
+        program.name = only.name.clone();
+    }
+    if program.units.is_empty() {
+        report.error(Code::BadElement, root.span(), "this project has no program");
+    }
+    configuration::switch_off(program, &idle, report);
+    program.comments.sort_by_key(|comment| comment.span);
+}
+
+/// The rungs of a POU, and the variables that wires in them need.
+fn body(
+    pou: &Pou<'_, '_>,
+    signatures: &Signatures,
+    comments: &mut Vec<Comment>,
+    report: &mut Report,
+) -> (Vec<Rung>, Vec<Variable>) {
+    let name = &pou.unit.name.text;
+    for what in ["actions", "transitions"] {
+        for _ in pou.node.child(what).into_iter().flat_map(Node::children) {
+            report.not_supported(format!("{what} of `{name}`"), pou.node.span());
+        }
+    }
+    let mut rungs = (Vec::new(), Vec::new());
+    let mut found = false;
+    for content in pou.node.all("body").flat_map(Node::children) {
+        let language = content.name();
+        match language {
+            "LD" | "FBD" => {
+                let (more, hidden) = if content.child("rung").is_some() {
+                    (textual::read(content, signatures, report), Vec::new())
+                } else {
+                    rungs::read(content, pou, signatures, comments, report)
+                };
+                rungs.0.extend(more);
+                rungs.1.extend(hidden);
+            }
+            "ST" => rungs.0.extend(structured_text(content, name, report)),
+            "IL" | "SFC" => {
+                let problem = format!("the body of `{name}` is in {language}, which Rung does not read");
+                report.error(Code::NotSupported, content.span(), problem);
+            }
+            _ => continue,
+        }
+        found = true;
+    }
+    if !found {
+        report.error(Code::BadElement, pou.node.span(), format!("`{name}` has no body"));
+    }
+    rungs
+}
+
+/// The rungs of a body in structured text: `content` is `<ST>`, and the text stands in the element that
+/// [`Node::text_node`] gives, from its [`Node::text_span`] on.
+fn structured_text(content: Node<'_, '_>, name: &str, report: &mut Report) -> Vec<Rung> {
+    let text = content.text_node();
+    if !text.text().is_empty() {
+        let message = format!("the body of `{name}` is in structured text, which is not read in PLCopen files yet");
+        report.error(Code::NotSupported, text.text_span(), message);
+    }
+    Vec::new()
+}
+
+/// An external variable is the global of its name, which has to be there.
+fn check_externals(pous: &[Pou<'_, '_>], globals: &[Variable], report: &mut Report) {
+    let globals: HashSet<String> = globals.iter().map(|global| global.name.key()).collect();
+    for external in pous.iter().flat_map(|pou| &pou.externals) {
+        if !globals.contains(&key(&external.name.text)) {
+            let message = format!("no configuration or resource declares the global variable `{}`", external.name.text);
+            report.error(Code::UndeclaredName, external.name.span, message);
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! XML as a compact tree: names without prefix, attributes, text, and the place of every start tag.
+//!
+//! It must stay within bounded memory and time whatever the text: nesting, elements and attributes are limited, there
+//! are no entities but XML's own five, and a document type is refused. What no reader of PLCopen files looks at
+//! (corners of wires, tools' own data) is not kept.
+
+use std::borrow::Cow;
+
+use quick_xml::{Reader, XmlVersion};
+use quick_xml::escape::resolve_predefined_entity;
+use quick_xml::events::{BytesStart, Event};
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+
+/// How deep elements may nest. TC6 itself needs about 20, with structures in structures some more.
+const MOST_DEPTH: usize = 200;
+/// How many elements are kept: some fifty thousand rungs.
+const MOST_ELEMENTS: usize = 1 << 21;
+/// How many attributes are kept.
+const MOST_ATTRIBUTES: usize = 1 << 22;
+/// How many attributes one element may have; TC6 needs ten.
+const MOST_OF_ONE: usize = 64;
+
+/// No element.
+const NONE: u32 = u32::MAX;
+
+/// The tree.
+#[derive(Default)]
+pub(super) struct Document<'a> {
+    elements: Vec<Data<'a>>,
+    attributes: Vec<(&'a str, Cow<'a, str>)>,
+}
+
+struct Data<'a> {
+    /// Empty for a comment.
+    name: &'a str,
+    span: Span,
+    attributes: (u32, u32),
+    first_child: u32,
+    last_child: u32,
+    next: u32,
+    text: Cow<'a, str>,
+    text_span: Span,
+}
+
+/// One element of a tree.
+#[derive(Clone, Copy)]
+pub(super) struct Node<'d, 'a> {
+    document: &'d Document<'a>,
+    index: u32,
+}
+
+impl<'d, 'a> Node<'d, 'a> {
+    fn data(self) -> &'d Data<'a> {
+        &self.document.elements[self.index as usize]
+    }
+
+    fn at(self, index: u32) -> Option<Self> {
+        (index != NONE).then_some(Self { document: self.document, index })
+    }
+
+    /// Its name without a prefix.
+    pub(super) fn name(self) -> &'a str {
+        self.data().name
+    }
+
+    /// Its start tag.
+    pub(super) fn span(self) -> Span {
+        self.data().span
+    }
+
+    /// The value of an attribute, where it is there and not blank.
+    pub(super) fn attribute(self, name: &str) -> Option<&'d str> {
+        let (first, last) = self.data().attributes;
+        let attributes = &self.document.attributes[first as usize..last as usize];
+        let (_, value) = attributes.iter().find(|(known, _)| *known == name)?;
+        Some(value.trim()).filter(|value| !value.is_empty())
+    }
+
+    /// Whether an attribute says yes.
+    pub(super) fn flag(self, name: &str) -> bool {
+        self.attribute(name).is_some_and(|value| ["true", "1", name].iter().any(|yes| value.eq_ignore_ascii_case(yes)))
+    }
+
+    /// The elements in it, in order; not the comments.
+    pub(super) fn children(self) -> impl Iterator<Item = Self> {
+        self.children_and_comments().filter(|node| !node.name().is_empty())
+    }
+
+    /// The elements and comments in it, in order. A comment has an empty name.
+    pub(super) fn children_and_comments(self) -> impl Iterator<Item = Self> {
+        std::iter::successors(self.at(self.data().first_child), |node| node.at(node.data().next))
+    }
+
+    /// The elements of that name in it, in order.
+    pub(super) fn all(self, name: &str) -> impl Iterator<Item = Self> {
+        self.children().filter(move |node| node.name() == name)
+    }
+
+    /// The first element of that name in it.
+    pub(super) fn child(self, name: &str) -> Option<Self> {
+        self.all(name).next()
+    }
+
+    /// Its own text without blanks around it.
+    pub(super) fn text(self) -> &'d str {
+        self.data().text.trim()
+    }
+
+    /// Where its text starts and ends.
+    pub(super) fn text_span(self) -> Span {
+        self.data().text_span
+    }
+
+    /// The text of it and all in it (documentation is XHTML), without blanks around it.
+    pub(super) fn whole_text(self) -> String {
+        let mut text = self.text().to_owned();
+        for child in self.children() {
+            let more = child.whole_text();
+            if !more.is_empty() {
+                if !text.is_empty() {
+                    text.push('\n');
+                }
+                text.push_str(&more);
+            }
+        }
+        text
+    }
+
+    /// The innermost element that has text: that of a body in `<ST><xhtml:p>…`.
+    pub(super) fn text_node(self) -> Self {
+        let inner = self.children().find(|child| !child.whole_text().is_empty());
+        match inner {
+            Some(child) if self.text().is_empty() => child.text_node(),
+            _ => self,
+        }
+    }
+}
+
+impl<'a> Document<'a> {
+    /// The outermost element.
+    pub(super) fn root(&self) -> Option<Node<'_, 'a>> {
+        let index = self.elements.iter().position(|data| !data.name.is_empty())?;
+        Some(Node { document: self, index: u32::try_from(index).ok()? })
+    }
+
+    /// Reads XML.
+    ///
+    /// # Errors
+    /// At the first place where it is not well formed or beyond a limit.
+    pub(super) fn read(text: &'a str) -> Result<Self, Diagnostic> {
+        Reading { document: Self::default(), open: Vec::new(), skipped: 0, rooted: false, text }.read()
+    }
+}
+
+struct Reading<'a> {
+    text: &'a str,
+    document: Document<'a>,
+    /// The elements around this place, with the spans of their names.
+    open: Vec<u32>,
+    /// How many elements around this place are not kept.
+    skipped: usize,
+    rooted: bool,
+}
+
+impl<'a> Reading<'a> {
+    fn read(mut self) -> Result<Document<'a>, Diagnostic> {
+        let mut reader = Reader::from_str(self.text);
+        loop {
+            let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
+            let event = reader.read_event();
+            let span = Span::new(start, usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX));
+            match event {
+                Err(error) => {
+                    let at = usize::try_from(reader.error_position()).unwrap_or(start);
+                    return Err(malformed(Span::new(at, at + 1), error.to_string()));
+                }
+                Ok(Event::Start(tag)) => self.start(&tag, span)?,
+                Ok(Event::Empty(tag)) => {
+                    self.start(&tag, span)?;
+                    self.end();
+                }
+                Ok(Event::End(_)) => self.end(),
+                Ok(Event::Text(text)) => self.add_text(text.into_inner(), span)?,
+                Ok(Event::CData(text)) => self.add_text(text.into_inner(), span)?,
+                Ok(Event::GeneralRef(reference)) => {
+                    let character = reference.resolve_char_ref().map_err(|error| malformed(span, error.to_string()))?;
+                    let text = match character {
+                        Some(character) => Cow::Owned(character.to_string()),
+                        None => match resolve_predefined_entity(&reference.into_inner()) {
+                            Some(text) => Cow::Borrowed(text),
+                            None => {
+                                let problem = malformed(span, "this entity is not defined".to_owned());
+                                return Err(problem.hint("only &lt; &gt; &amp; &quot; &apos; and character references are read"));
+                            }
+                        },
+                    };
+                    self.add_text(text, span)?;
+                }
+                Ok(Event::Comment(text)) if self.skipped == 0 => {
+                    let text = text.into_inner();
+                    self.add("", span, (0, 0))?;
+                    if let Some(data) = self.document.elements.last_mut() {
+                        data.text = text;
+                        data.text_span = span;
+                    }
+                }
+                Ok(Event::DocType(_)) => {
+                    let problem = malformed(span, "a document type is not read".to_owned());
+                    return Err(problem.hint("PLCopen files have none; take it out"));
+                }
+                Ok(Event::Comment(_) | Event::Decl(_) | Event::PI(_)) => {}
+                Ok(Event::Eof) => break,
+            }
+        }
+        if let Some(open) = self.open.last() {
+            let data = &self.document.elements[*open as usize];
+            let problem = Diagnostic::new(Code::Unclosed, data.span, format!("`<{}>` is never closed", data.name));
+            return Err(problem.hint("the file may have been cut off"));
+        }
+        if !self.rooted {
+            return Err(malformed(Span::default(), "there is no element".to_owned()));
+        }
+        Ok(self.document)
+    }
+
+    fn start(&mut self, tag: &BytesStart<'a>, span: Span) -> Result<(), Diagnostic> {
+        if self.open.len() + self.skipped >= MOST_DEPTH {
+            let message = format!("elements nest deeper than {MOST_DEPTH} here");
+            return Err(Diagnostic::new(Code::TooDeep, span, message));
+        }
+        // The name is the tag's text from its second byte on.
+        let name_start = span.range().start + 1;
+        let name = self.text.get(name_start..name_start + tag.name().as_ref().len()).unwrap_or("");
+        let name = name.rsplit_once(':').map_or(name, |(_, local)| local);
+        let in_connection =
+            self.open.last().is_some_and(|open| self.document.elements[*open as usize].name == "connection");
+        if self.skipped > 0 || matches!(name, "relPosition" | "addData") || in_connection && name == "position" {
+            self.skipped += 1;
+            return Ok(());
+        }
+        if self.open.is_empty() && self.rooted {
+            return Err(malformed(span, "there is a second outermost element".to_owned()));
+        }
+        self.rooted = true;
+        let attributes = self.attributes(tag, span)?;
+        self.add(name, span, attributes)?;
+        let index = self.document.elements.len() - 1;
+        self.open.push(u32::try_from(index).unwrap_or(NONE));
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        if self.skipped > 0 {
+            self.skipped -= 1;
+        } else {
+            self.open.pop();
+        }
+    }
+
+    fn attributes(&mut self, tag: &BytesStart<'a>, span: Span) -> Result<(u32, u32), Diagnostic> {
+        let first = self.document.attributes.len();
+        if tag.attributes_raw().trim().is_empty() {
+            return Ok((0, 0));
+        }
+        // Their names are compared pairwise.
+        if tag.attributes().with_checks(false).take(MOST_OF_ONE + 1).count() > MOST_OF_ONE {
+            return Err(too_large(span, format!("this element has more than {MOST_OF_ONE} attributes")));
+        }
+        let base = span.range().start + 1;
+        let tag_text = tag.as_ref();
+        for attribute in tag.attributes() {
+            let attribute = attribute.map_err(|error| malformed(span, error.to_string()))?;
+            let key = attribute.key.as_ref();
+            // The reader lends from the tag; the tree borrows the same bytes from the text.
+            let offset = (key.as_ptr() as usize).wrapping_sub(tag_text.as_ptr() as usize);
+            let key = self.text.get(base + offset..base + offset + key.len()).unwrap_or("");
+            let raw = attribute.value.as_ref();
+            let offset = (raw.as_ptr() as usize).wrapping_sub(tag_text.as_ptr() as usize);
+            let plain = self.text.get(base + offset..base + offset + raw.len());
+            let value = match (plain, raw.contains(['&', '\n', '\t', '\r'])) {
+                (Some(plain), false) => Cow::Borrowed(plain),
+                _ => Cow::Owned(
+                    attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|error| malformed(span, error.to_string()))?.into_owned(),
+                ),
+            };
+            self.document.attributes.push((key.rsplit_once(':').map_or(key, |(_, local)| local), value));
+        }
+        let last = self.document.attributes.len();
+        if last > MOST_ATTRIBUTES {
+            return Err(too_large(span, format!("this file has more than {MOST_ATTRIBUTES} attributes")));
+        }
+        let clamp = |index: usize| u32::try_from(index).unwrap_or(u32::MAX);
+        Ok((clamp(first), clamp(last)))
+    }
+
+    fn add(&mut self, name: &'a str, span: Span, attributes: (u32, u32)) -> Result<(), Diagnostic> {
+        let index = self.document.elements.len();
+        if index >= MOST_ELEMENTS {
+            return Err(too_large(span, format!("this file has more than {MOST_ELEMENTS} elements")));
+        }
+        let index = u32::try_from(index).unwrap_or(NONE);
+        let (text, text_span) = (Cow::Borrowed(""), Span::default());
+        let data =
+            Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span };
+        self.document.elements.push(data);
+        if let Some(parent) = self.open.last().copied() {
+            let elements = &mut self.document.elements;
+            let before = std::mem::replace(&mut elements[parent as usize].last_child, index);
+            if before == NONE {
+                elements[parent as usize].first_child = index;
+            } else {
+                elements[before as usize].next = index;
+            }
+        }
+        Ok(())
+    }
+
+    fn add_text(&mut self, text: Cow<'a, str>, span: Span) -> Result<(), Diagnostic> {
+        let blank = text.trim().is_empty();
+        if self.skipped > 0 {
+            return Ok(());
+        }
+        let Some(open) = self.open.last() else {
+            return if blank { Ok(()) } else { Err(malformed(span, "text stands outside of the elements".to_owned())) };
+        };
+        let data = &mut self.document.elements[*open as usize];
+        if data.text.is_empty() {
+            if !blank {
+                data.text = text;
+                data.text_span = span;
+            }
+        } else {
+            data.text.to_mut().push_str(&text);
+            data.text_span = data.text_span.to(span);
+        }
+        Ok(())
+    }
+}
+
+fn malformed(span: Span, message: String) -> Diagnostic {
+    Diagnostic::new(Code::BadXml, span, message)
+}
+
+fn too_large(span: Span, message: String) -> Diagnostic {
+    Diagnostic::new(Code::FileTooLarge, span, message)
+}

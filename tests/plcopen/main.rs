@@ -1,0 +1,37 @@
+//! The front end for PLCopen XML: every quirk of the format in a small drawing of its own, hostile files, and the files of
+//! the corpus where it is there.
+
+mod corpus;
+mod declarations;
+mod drawing;
+mod errors;
+mod hostile;
+mod networks;
+mod size;
+
+use rung::diagnostic::Diagnostic;
+use rung::frontend::{self, Parsed, native};
+use rung::source::Source;
+
+/// What a file is read as.
+fn parse(text: &str) -> Parsed {
+    frontend::parse(&Source::new("test.xml", text))
+}
+
+/// The native text of a file that has no fault.
+fn native_text(text: &str) -> String {
+    let parsed = parse(text);
+    assert_eq!(codes(&parsed.diagnostics), Vec::<String>::new(), "{:#?}", parsed.diagnostics);
+    native::print(&parsed.program)
+}
+
+/// The rungs of a file that has no fault, each on a line, without `rung`.
+fn rungs(text: &str) -> Vec<String> {
+    let text = native_text(text);
+    let body = text.split_once("\nrung").map_or("", |(_, body)| body);
+    body.split("\nrung").map(|rung| rung.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
+fn codes(diagnostics: &[Diagnostic]) -> Vec<String> {
+    diagnostics.iter().map(|diagnostic| diagnostic.code.to_string()).collect()
+}
