@@ -74,6 +74,8 @@ codes! {
     UnboundedLoop = 208 Error "a loop without a constant number of times",
     BadXml = 221 Error "XML that cannot be read",
     BadElement = 222 Error "an element that lacks what it needs",
+    NotSupported = 209 Error "something that Rung has not",
+    CannotConvert = 210 Error "something that the other format has not",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
@@ -118,7 +120,6 @@ codes! {
     TooManyWarnings = 603 Warning "too many warnings",
     TooManyElements = 604 Error "arrays with too many elements",
     TooLargeInlined = 605 Error "too much is called within calls",
-    NotSupported = 611 Error "something that Rung has not",
     // Stimuli, maps and replays.
     BadStimuli = 701 Error "stimuli that cannot be used",
     BadMap = 702 Error "a map that cannot be used",

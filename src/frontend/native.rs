@@ -6,7 +6,7 @@
 mod declarations;
 mod elements;
 mod parser;
-mod print;
+pub(super) mod print;
 mod rungs;
 mod units;
 

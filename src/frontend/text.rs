@@ -5,14 +5,14 @@
 //! Syntax only: nothing here may look a name up, know a block or judge a type.
 
 mod expressions;
-mod lexer;
+pub(crate) mod lexer;
 pub(crate) mod literals;
 mod reader;
 mod statements;
 pub(crate) mod token;
 mod types;
 
-pub(crate) use reader::{Parse, Reader};
+pub(crate) use reader::{GivenUp, Parse, Reader};
 pub(crate) use statements::Braces;
 
 /// How deep circuits, parentheses, statements and expressions may nest. A limit, so that no text can exhaust the stack of

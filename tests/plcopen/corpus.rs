@@ -22,7 +22,7 @@ const FILES: [(&str, usize, &[&str]); 14] = [
     ("esbmc__stairs_light__stairs_light.ld", 2, &[]),
     ("esbmc__water_control__water_control.ld", 2, &[]),
     ("parking-automation__openplc__plc.xml", 8, &[]),
-    ("sphere-usecases__test_project__plc_minimal.xml", 11, &["R0611", "R0611", "R0611", "R0611"]),
+    ("sphere-usecases__test_project__plc_minimal.xml", 11, &["R0209", "R0209", "R0209", "R0209"]),
 ];
 
 #[test]

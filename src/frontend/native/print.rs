@@ -7,7 +7,7 @@ mod declarations;
 mod rungs;
 mod statements;
 mod types;
-mod words;
+pub(in crate::frontend) mod words;
 
 use crate::ladder::{Comment, Program, Unit, UnitKind};
 use crate::source::Span;

@@ -8,6 +8,7 @@ use super::literals::Problem;
 use super::token::{Dialect, Kind, Token};
 use super::{MAXIMUM_DEPTH, MOST_DIAGNOSTICS, literals};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::missing::Missing;
 use crate::ladder::{Address, Area, Comment, Name, Width};
 use crate::source::{Source, Span};
 
@@ -29,7 +30,7 @@ pub(crate) type Parse<T> = Result<T, GivenUp>;
 pub(crate) struct Reader<'a> {
     /// What is read.
     pub(crate) source: &'a Source,
-    dialect: Dialect,
+    pub(super) dialect: Dialect,
     lexer: Lexer<'a>,
     /// The token to be read next.
     pub(crate) token: Token,
@@ -39,6 +40,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) comments: Vec<Comment>,
     /// What was found so far.
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// What the text has and Rung has not.
+    pub(crate) missing: Missing,
     /// Brackets, parentheses and statements around the current token.
     depth: usize,
     /// TooDeep was said of this declaration or rung: once is enough.
@@ -78,6 +81,7 @@ impl<'a> Reader<'a> {
             end: 0,
             comments: Vec::new(),
             diagnostics: Vec::new(),
+            missing: Missing::default(),
             depth: 0,
             too_deep: false,
             copies_left: (COPIES_PER_BYTE * source.text().len() + (1 << 16)).min(MOST_COPIES),

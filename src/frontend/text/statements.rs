@@ -2,11 +2,11 @@
 
 use super::expressions::{Path, Tree};
 use super::reader::{Parse, Reader};
-use super::token::{Keyword, Kind};
+use super::token::{Dialect, Keyword, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{
     Argument, BlockCall, CaseBranch, CaseLabel, ConditionalBranch, Expression, ExpressionKind, FunctionArgument, Name,
-    Reference, Statement, StatementKind, Wire,
+    Reference, Statement, StatementKind, UnaryOperator, Wire,
 };
 use crate::source::Span;
 
@@ -232,8 +232,7 @@ impl Reader<'_> {
             return self.give_up(problem.hint("to compare, write ="));
         };
         self.advance();
-        let value = self.expression()?;
-        Ok(Start::Statement(StatementKind::Assignment { target, value }))
+        Ok(Start::Statement(self.assignment(target)?))
     }
 
     /// The name of a function that is a keyword too.
@@ -252,6 +251,53 @@ impl Reader<'_> {
         self.statement_from_value(value)
     }
 
+    /// An assignment, behind its `:=`. In structured text a call there can have EN and outputs of its own; then it is a call that
+    /// gives OUT to the target, as its first argument, which stands before the call.
+    fn assignment(&mut self, target: Reference) -> Parse<StatementKind> {
+        use Keyword as K;
+        let start = self.token.span;
+        let is_function =
+            matches!(self.token.kind, Kind::Name | Kind::Keyword(K::And | K::Or | K::Xor | K::Mod | K::Not));
+        let behind = self.source.text()[start.range().end..].trim_start();
+        let is_call = is_function && behind.starts_with('(') && !behind.starts_with("(*");
+        if self.dialect == Dialect::Native || !is_call {
+            return Ok(StatementKind::Assignment { target, value: self.expression()? });
+        }
+        let function = self.function_word();
+        let arguments = self.arguments()?;
+        let is_box = |argument: &Argument| {
+            matches!(argument.wire, Wire::Output(_)) || argument.pin.text.eq_ignore_ascii_case("EN")
+        };
+        if !arguments.list.iter().any(is_box) {
+            let first = self.value_of_call(function, arguments, start.start);
+            return Ok(StatementKind::Assignment { target, value: self.tree_from(first)?.expression });
+        }
+        if self.token.kind != Kind::Semicolon {
+            let problem = self.unexpected("`;`");
+            return self.give_up(problem.hint("a call with EN or with outputs beside its result stands by itself"));
+        }
+        let span = target.span;
+        let result = Argument { pin: Name::new("OUT", span), wire: Wire::Output(target), span };
+        let arguments = std::iter::once(result).chain(arguments.list).collect();
+        let instance = Reference::of_name(function);
+        Ok(StatementKind::Call(BlockCall { instance, type_name: None, arguments, power_output: None }))
+    }
+
+    /// A call as an operand. NOT(a) is an operator, although it looks like a call.
+    fn value_of_call(&mut self, function: Name, arguments: Arguments, start: u32) -> Tree {
+        let mut values: Vec<FunctionArgument> = arguments.list.into_iter().filter_map(function_argument).collect();
+        let kind = match values.pop() {
+            Some(FunctionArgument { parameter: None, value }) if values.is_empty() && function.key() == "not" => {
+                ExpressionKind::Unary(UnaryOperator::Not, Box::new(value))
+            }
+            last => {
+                values.extend(last);
+                ExpressionKind::Call { function, arguments: values }
+            }
+        };
+        self.around(arguments.height, kind, start)
+    }
+
     /// A call, from its opening parenthesis on. Where no `;` follows, it may be the first operand of an expression.
     fn call_statement(&mut self, instance: Reference) -> Parse<Start> {
         let start = instance.span.start;
@@ -265,9 +311,7 @@ impl Reader<'_> {
             && values
             && let Some(function) = instance.as_name().cloned()
         {
-            let values = arguments.list.into_iter().filter_map(function_argument).collect();
-            let kind = ExpressionKind::Call { function, arguments: values };
-            let first = self.around(arguments.height, kind, start);
+            let first = self.value_of_call(function, arguments, start);
             let value = self.tree_from(first)?;
             return self.statement_from_value(value);
         }

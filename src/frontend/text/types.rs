@@ -1,16 +1,78 @@
 //! Types: where a declaration names one, and declarations of their own.
 
-use super::reader::{Parse, Reader};
-use super::token::{Keyword, Kind};
+use super::reader::{GivenUp, Parse, Reader};
+use super::token::{Dialect, Keyword, Kind};
 use crate::ladder::{Dimension, Expression, Field, Name, TypeDeclaration, TypeKind, TypeReference};
+use crate::source::Span;
 
 impl Reader<'_> {
     /// The name of a type, or `array [0..9, 1..3] of` one.
     pub(crate) fn type_reference(&mut self) -> Parse<TypeReference> {
         let start = self.token.span.start;
         let dimensions = if self.take(Kind::Keyword(Keyword::Array)) { self.dimensions()? } else { Vec::new() };
+        if self.dialect == Dialect::StructuredText {
+            self.refuse_type()?;
+        }
         let name = self.name("the name of a type")?;
         Ok(TypeReference { dimensions, name, span: self.since(start) })
+    }
+
+    /// Gives up a declaration of a type that only structured text has.
+    fn refuse_type(&mut self) -> Parse<()> {
+        const UNKNOWN: [&str; 18] = [
+            "STRING",
+            "WSTRING",
+            "CHAR",
+            "WCHAR",
+            "DATE",
+            "LDATE",
+            "TIME_OF_DAY",
+            "TOD",
+            "LTOD",
+            "DATE_AND_TIME",
+            "DT",
+            "LDT",
+            "LTIME",
+            "POINTER",
+            "REFERENCE",
+            "REF_TO",
+            "ANY",
+            "UNION",
+        ];
+        let span = self.token.span;
+        let what = match self.token.kind {
+            Kind::Keyword(Keyword::Array) => "an array of arrays".to_owned(),
+            Kind::Keyword(Keyword::Struct) => "a structure without a name".to_owned(),
+            Kind::LeftParenthesis => "an enumeration without a name".to_owned(),
+            _ => match UNKNOWN.into_iter().find(|name| self.at_word(name)) {
+                Some(name) => format!("the type {name}"),
+                None => return Ok(()),
+            },
+        };
+        self.missing.note(&what, span);
+        Err(GivenUp)
+    }
+
+    /// `(0..100)` behind the name of a type, in structured text: the type is taken without its bounds. Gives the lower one, which a
+    /// variable starts with.
+    pub(crate) fn subrange(&mut self) -> Parse<Option<Expression>> {
+        let open = self.token.span;
+        if self.dialect != Dialect::StructuredText || !self.take(Kind::LeftParenthesis) {
+            return Ok(None);
+        }
+        Ok(Some(self.bounds(open)?))
+    }
+
+    /// The bounds of a subrange, behind the parenthesis; gives the lower.
+    fn bounds(&mut self, open: Span) -> Parse<Expression> {
+        let first = self.expression()?;
+        if !self.take(Kind::Range) {
+            let problem = self.unexpected("`..`");
+            return self.give_up(problem.hint("a subrange looks like this: INT (0..100)"));
+        }
+        self.expression()?;
+        self.close(Kind::RightParenthesis, open, "")?;
+        Ok(first)
     }
 
     /// `[0..9, 1..3] of`
@@ -56,7 +118,7 @@ impl Reader<'_> {
             _ => {
                 let ty = self.type_reference()?;
                 if ty.dimensions.is_empty() && self.token.kind == Kind::LeftParenthesis {
-                    self.enumeration(Some(ty.name))?
+                    self.enumeration_or_subrange(ty)?
                 } else {
                     let initial = if self.take(Kind::Assign) { Some(self.initial_value()?) } else { None };
                     TypeKind::Alias { ty, initial }
@@ -70,6 +132,25 @@ impl Reader<'_> {
     fn enumeration(&mut self, base: Option<Name>) -> Parse<TypeKind> {
         let open = self.token.span;
         self.advance();
+        self.enumeration_from(base, open)
+    }
+
+    /// What stands behind a type in parentheses: numbers are bounds, names are values.
+    fn enumeration_or_subrange(&mut self, ty: TypeReference) -> Parse<TypeKind> {
+        if self.dialect == Dialect::Native {
+            return self.enumeration(Some(ty.name));
+        }
+        let open = self.token.span;
+        self.advance();
+        if self.token.kind.is_name() {
+            return self.enumeration_from(Some(ty.name), open);
+        }
+        let lower = self.bounds(open)?;
+        let initial = if self.take(Kind::Assign) { self.initial_value()? } else { lower };
+        Ok(TypeKind::Alias { ty, initial: Some(initial) })
+    }
+
+    fn enumeration_from(&mut self, base: Option<Name>, open: Span) -> Parse<TypeKind> {
         let mut values = Vec::new();
         loop {
             self.anchor_here();
@@ -121,7 +202,8 @@ impl Reader<'_> {
             return self.give_up(problem.hint("each member of a structure has a type: x : REAL"));
         }
         let ty = self.type_reference()?;
-        let initial: Option<Expression> = if self.take(Kind::Assign) { Some(self.initial_value()?) } else { None };
+        let lower = self.subrange()?;
+        let initial = if self.take(Kind::Assign) { Some(self.initial_value()?) } else { lower };
         self.count_copies(&from, names.len(), self.since(start))?;
         if let Some(last) = names.pop() {
             fields.extend(names.into_iter().map(|name| Field { name, ty: ty.clone(), initial: initial.clone() }));

@@ -164,7 +164,7 @@ fn starts_with_minus(expression: &Expression) -> bool {
     }
 }
 
-fn literal(literal: &Literal) -> String {
+pub(in crate::frontend) fn literal(literal: &Literal) -> String {
     let typed = |ty: &Option<_>, digits: String| match ty {
         Some(ty) => format!("{ty}#{digits}"),
         None => digits,

@@ -1,0 +1,260 @@
+//! Boxes of blocks and functions.
+
+use super::power::{Change, Power};
+use super::rungs::{Rungs, conducts};
+use super::uses;
+use super::words::pin;
+use crate::elementary::Elementary;
+use crate::ladder::functions::{Function, StandardFunction};
+use crate::ladder::library::{StandardBlock, Takes};
+use crate::ladder::{BlockCall, Expression, ExpressionKind, Reference, Step, UnitKind, VariableClass, Wire, key};
+use crate::source::Span;
+
+/// Whether other compilers have a block: those of the register machine take constants and registers.
+pub(super) fn is_iec(block: StandardBlock) -> bool {
+    block.inputs().iter().all(|input| input.takes == Takes::Value)
+}
+
+/// The BOOL pins of a block through which power flows.
+struct PowerPins {
+    input: Option<String>,
+    output: Option<String>,
+    has_enable: bool,
+}
+
+impl Rungs<'_> {
+    /// A box; gives the power on its right.
+    pub(super) fn block(&mut self, call: &BlockCall, left: Power, needed: bool, span: Span) -> Power {
+        if self.is_function(call) {
+            return self.function_box(call, left, needed);
+        }
+        let Some(pins) = self.power_pins(call) else {
+            let message = "this block has no counterpart in structured text";
+            let ty = call.type_name.as_ref().map_or(call.instance.span, |name| name.span);
+            self.problem(if ty == Span::default() { span } else { ty }, message);
+            return left;
+        };
+        let is_wired = |name: &str| pin(call, name).is_some();
+        let feeds = pins.input.filter(|input| !is_wired(input));
+        let mut arguments = Vec::new();
+        let (left, enable) = self.arguments(call, left, feeds.as_deref(), pins.has_enable, &mut arguments);
+        let enabled = if feeds.is_some() { enable } else { self.and(left, enable) };
+        let output = match &call.power_output {
+            Some(output) if !output.text.eq_ignore_ascii_case("ENO") => Some(output.text.clone()),
+            Some(_) => None,
+            None => pins.output,
+        };
+        let enabled = if needed && output.is_none() { self.held(enabled, &Change::All) } else { enabled };
+        self.spill(&Change::All);
+        let instance = self.words().reference(&call.instance);
+        let mut statements = vec![format!("{instance}({});", arguments.join(", "))];
+        if let Some(argument) = pin(call, "ENO").filter(|_| !pins.has_enable)
+            && let Wire::Output(target) = &argument.wire
+        {
+            statements.push(format!("{} := TRUE;", self.words().reference(target)));
+        }
+        self.line_while(&enabled, &statements.join(" "));
+        match output {
+            None => enabled,
+            Some(output) => {
+                let mut reference: Reference = call.instance.clone();
+                reference.steps.push(Step::Member(crate::ladder::Name::new(output, Span::default())));
+                Power::While(Expression { kind: ExpressionKind::Read(reference), span: Span::default() })
+            }
+        }
+    }
+
+    /// The arguments of a block in words, in their order, with the power on the left and on EN when all are computed.
+    fn arguments(
+        &mut self,
+        call: &BlockCall,
+        left: Power,
+        feeds: Option<&str>,
+        has_enable: bool,
+        arguments: &mut Vec<String>,
+    ) -> (Power, Power) {
+        let mut enable = Power::Always;
+        let mut values = Vec::new();
+        let (left, circuits) = self.keeping(left, |rungs| {
+            let mut circuits = 0;
+            for argument in &call.arguments {
+                if let Wire::Circuit(circuit) = &argument.wire {
+                    if !conducts(circuit) && !values.is_empty() {
+                        rungs.problem(
+                            argument.span,
+                            "what this circuit does would come before the pins that stand before it",
+                        );
+                    }
+                    let power = rungs.circuit(circuit, Power::Always, true);
+                    rungs.live_push(power);
+                    circuits += 1;
+                } else {
+                    values.push(argument);
+                }
+            }
+            rungs.live_take(circuits)
+        });
+        let mut circuits = circuits.into_iter();
+        if let Some(input) = feeds {
+            arguments.push(format!("{input} := {}", self.words().expression(&left.expression())));
+        }
+        for argument in &call.arguments {
+            let is_enable = !has_enable && argument.pin.text.eq_ignore_ascii_case("EN");
+            let power = match &argument.wire {
+                Wire::Circuit(_) => circuits.next(),
+                Wire::Value(value) if is_enable => Some(Power::of(value.clone())),
+                _ => None,
+            };
+            match power {
+                Some(power) if is_enable => enable = power,
+                Some(power) => {
+                    let pin = self.names.spell(&argument.pin.text).into_owned();
+                    arguments.push(format!("{pin} := {}", self.words().expression(&power.expression())));
+                }
+                None if !has_enable && argument.pin.text.eq_ignore_ascii_case("ENO") => {}
+                None => arguments.extend(self.words().argument(argument)),
+            }
+        }
+        (left, enable)
+    }
+
+    /// A box of a function, which is enabled by the power on its left.
+    fn function_box(&mut self, call: &BlockCall, left: Power, needed: bool) -> Power {
+        let mut call = call.clone();
+        let mut enable = Power::Always;
+        let mut rest = Vec::new();
+        let mut left = left;
+        for mut argument in std::mem::take(&mut call.arguments) {
+            if let Wire::Circuit(circuit) = &argument.wire {
+                if !conducts(circuit) && !rest.is_empty() {
+                    self.problem(
+                        argument.span,
+                        "what this circuit does would come before the pins that stand before it",
+                    );
+                }
+                let (kept, power) = self.keeping(left, |rungs| rungs.circuit(circuit, Power::Always, true));
+                left = kept;
+                argument.wire = Wire::Value(power.expression());
+            }
+            match &argument.wire {
+                Wire::Value(value) if argument.pin.text.eq_ignore_ascii_case("EN") => enable = Power::of(value.clone()),
+                _ => rest.push(argument),
+            }
+        }
+        call.arguments = rest;
+        let enabled = self.and(left, enable);
+        let name = call.instance.as_name().cloned();
+        let unit = name.as_ref().and_then(|name| self.function(name));
+        let result_of =
+            |pin: &str| pin.eq_ignore_ascii_case("OUT") || name.as_ref().is_some_and(|name| name.key() == key(pin));
+        let chosen = call.power_output.clone().filter(|output| !output.text.eq_ignore_ascii_case("ENO"));
+        let has_result =
+            call.arguments.iter().any(|one| matches!(one.wire, Wire::Output(_)) && result_of(&one.pin.text));
+        if let Some(output) = chosen.filter(|_| needed) {
+            return self.chosen_output(call, &output, result_of(&output.text), enabled);
+        }
+        if let Some(unit) = unit
+            && let UnitKind::Function { result: Some(ty) } = &unit.kind
+            && !has_result
+        {
+            // A result has to go somewhere.
+            let ty = self.words().type_reference(ty);
+            let unused = self.fresh("unused", &ty);
+            call.arguments.push(wired("OUT", &unused));
+        }
+        let does_nothing = unit.is_none() && !has_result;
+        let mut can_fail = does_nothing || is_division(&call);
+        uses::call(&call, &mut |mentioned| can_fail |= uses::has_computed_index(mentioned));
+        let mut right = enabled.clone();
+        if needed && can_fail && !does_nothing && pin(&call, "ENO").is_none() {
+            self.spill(&Change::All);
+            let eno = self.temporary();
+            self.line(&format!("{eno} := FALSE;"));
+            call.arguments.push(wired("ENO", &eno));
+            right = Power::of_variable(&eno);
+        } else if needed {
+            right = self.held(right, &Change::All);
+            if can_fail && pin(&call, "ENO").is_some() {
+                let span = call.instance.span;
+                self.problem(span, "ENO of this box is wired and gives the power behind it, too");
+            }
+        }
+        let enabled = if needed && !can_fail { right.clone() } else { enabled };
+        self.spill(&Change::All);
+        if !does_nothing {
+            let statement = format!("{};", self.words().function_box(&call));
+            self.line_while(&enabled, &statement);
+        }
+        right
+    }
+
+    /// A box of a function of which an output gives the power on the right: FALSE while it is not enabled.
+    fn chosen_output(
+        &mut self,
+        mut call: BlockCall,
+        output: &crate::ladder::Name,
+        is_result: bool,
+        enabled: Power,
+    ) -> Power {
+        self.spill(&Change::All);
+        let enabled = self.held(enabled, &Change::All);
+        let right = self.temporary();
+        self.line(&format!("{right} := FALSE;"));
+        let wired_before = call.arguments.iter().position(|one| {
+            matches!(one.wire, Wire::Output(_))
+                && (one.pin.key() == output.key() || is_result && one.pin.text.eq_ignore_ascii_case("OUT"))
+        });
+        let taken = wired_before.map(|index| call.arguments.remove(index));
+        call.arguments.push(wired(if is_result { "OUT" } else { &output.text }, &right));
+        let mut statements = vec![format!("{};", self.words().function_box(&call))];
+        if let Some(argument) = taken
+            && let Wire::Output(target) = &argument.wire
+        {
+            statements.push(format!("{} := {right};", self.words().reference(target)));
+        }
+        self.line_while(&enabled, &statements.join(" "));
+        Power::of_variable(&right)
+    }
+
+    /// The pins of a block through which power flows; `None` for a block that structured text has not.
+    fn power_pins(&self, call: &BlockCall) -> Option<PowerPins> {
+        let name = self.block_type(call)?;
+        if let Some(unit) = self.program.units.iter().find(|unit| unit.name.key() == key(&name)) {
+            let is_bool = |ty: &Option<crate::ladder::TypeReference>| {
+                ty.as_ref().is_none_or(|ty| {
+                    ty.dimensions.is_empty() && Elementary::from_name(&ty.name.text) == Some(Elementary::Bool)
+                })
+            };
+            let first = |class: VariableClass| {
+                let pin = unit.variables.iter().find(|one| one.class == class && is_bool(&one.ty));
+                pin.map(|pin| pin.name.text.clone())
+            };
+            let has_enable = unit.variables.iter().any(|one| one.name.key() == "en");
+            return Some(PowerPins {
+                input: first(VariableClass::Input),
+                output: first(VariableClass::Output),
+                has_enable,
+            });
+        }
+        let block = StandardBlock::from_name(&name).filter(|block| is_iec(*block))?;
+        let first = |pins: &[crate::ladder::library::Pin]| {
+            pins.iter().find(|pin| pin.ty == Elementary::Bool).map(|pin| pin.name.to_owned())
+        };
+        Some(PowerPins { input: first(block.inputs()), output: first(block.outputs()), has_enable: false })
+    }
+}
+
+/// Whether a box fails where an operand is zero.
+fn is_division(call: &BlockCall) -> bool {
+    let function = call.instance.as_name().and_then(|name| Function::from_name(&name.text));
+    matches!(function, Some(Function::Standard(StandardFunction::Divide | StandardFunction::Modulo)))
+}
+
+fn wired(pin: &str, variable: &str) -> crate::ladder::Argument {
+    let name = |text: &str| crate::ladder::Name::new(text, Span::default());
+    crate::ladder::Argument {
+        pin: name(pin),
+        wire: Wire::Output(Reference::of_name(name(variable))),
+        span: Span::default(),
+    }
+}

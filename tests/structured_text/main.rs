@@ -1,0 +1,12 @@
+//! Structured text from outside: what each construct becomes, what each mistake is called, that what is written means the same when
+//! it is read again, and that no bytes do harm.
+
+mod random;
+
+#[path = "../support"]
+mod support {
+    pub(crate) mod dice;
+    pub(crate) mod drawing;
+    pub(crate) mod random_program;
+    pub(crate) mod random_stimuli;
+}
