@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Failure, load, print, report, write_whole};
 use crate::diagnostic::{self, any_error};
 use crate::frontend::native;
+use crate::ladder::Origin;
 
 /// Writes programs in the canonical form of the native text
 #[derive(Debug, clap::Args)]
@@ -35,6 +36,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             continue;
         }
         let text = native::print(&loaded.program);
+        // A file of another tool stays as it is; what it is in native text goes to the standard output.
+        if loaded.program.origin == Origin::Imported && !arguments.check {
+            print(&text)?;
+            continue;
+        }
         let changed = text != loaded.source.text();
         if arguments.check {
             if changed {

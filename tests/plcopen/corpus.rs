@@ -28,7 +28,7 @@ const FILES: [(&str, usize, &[&str]); 14] = [
 #[test]
 fn files_of_the_corpus_are_read_and_come_back_from_native_text() {
     let Some(folder) = std::env::var_os("RUNG_CORPUS").map(|folder| PathBuf::from(folder).join("plcopen-ld")) else {
-        println!("RUNG_CORPUS is not set: the files of the corpus are not tested");
+        say("RUNG_CORPUS is not set: the files of the corpus are not tested");
         return;
     };
     for (file, rungs, expected) in FILES {
@@ -39,6 +39,12 @@ fn files_of_the_corpus_are_read_and_come_back_from_native_text() {
         let printed = native::print(&parsed.program);
         let again = rung::frontend::parse(&Source::new(file, printed.clone()));
         assert_eq!(codes(&again.diagnostics), Vec::<String>::new(), "{file}: {printed}");
-        println!("{file}: {rungs} rungs; checking finds {:?}", codes(&check(&parsed.program).1));
+        say(&format!("{file}: {rungs} rungs; checking finds {:?}", codes(&check(&parsed.program).1)));
     }
+}
+
+/// A line for who runs the tests with `--nocapture`.
+#[expect(clippy::print_stdout, reason = "it says what is not tested, and what checking finds in files of others")]
+fn say(line: &str) {
+    println!("{line}");
 }

@@ -1,6 +1,6 @@
 //! Declarations: types, interfaces, initial values, tasks and instances.
 
-use crate::drawing::{contact, coil, locals, pou, project, rail};
+use crate::drawing::{coil, contact, locals, pou, project, rail};
 use crate::{codes, native_text, parse};
 
 fn body(read: &str, written: &str) -> String {
@@ -56,8 +56,18 @@ fn units_tasks_and_globals_are_read() {
          <inOutVars><variable name='n'><type><INT/></type></variable></inOutVars>",
         &body("s", "q"),
     );
-    let function = pou("function", "same", "<returnType><BOOL/></returnType><inputVars><variable name='a'><type><BOOL/></type></variable></inputVars>", &body("a", "same"));
-    let main = pou("program", "main", "<externalVars><variable name='total'><type><BOOL/></type></variable></externalVars>", &body("total", "total"));
+    let function = pou(
+        "function",
+        "same",
+        "<returnType><BOOL/></returnType><inputVars><variable name='a'><type><BOOL/></type></variable></inputVars>",
+        &body("a", "same"),
+    );
+    let main = pou(
+        "program",
+        "main",
+        "<externalVars><variable name='total'><type><BOOL/></type></variable></externalVars>",
+        &body("total", "total"),
+    );
     let configuration = "<configuration name='c'><resource name='r'><task name='fast' priority='1' interval='T#20ms'>\
         <pouInstance name='one' typeName='main'/></task></resource>\
         <globalVars><variable name='total'><type><BOOL/></type></variable></globalVars></configuration>";
@@ -92,12 +102,13 @@ fn a_program_with_two_instances_has_them_by_name() {
         <pouInstance name='one' typeName='main'/><pouInstance name='two' typeName='MAIN'/></resource></configuration>";
     let text = native_text(&project(&main, configuration));
     assert!(text.contains("task slow(interval := T#1s500ms)"), "{text}");
-    assert!(text.ends_with("program one : main\nprogram two : main\n"), "{text}");
+    assert!(text.ends_with("program one : main\nprogram two : MAIN\n"), "{text}");
 }
 
 #[test]
 fn a_program_that_no_task_runs_is_off() {
-    let pous = pou("program", "main", &locals("a", "BOOL"), &body("a", "a")) + &pou("program", "idle", &locals("b", "BOOL"), &body("b", "b"));
+    let pous = pou("program", "main", &locals("a", "BOOL"), &body("a", "a"))
+        + &pou("program", "idle", &locals("b", "BOOL"), &body("b", "b"));
     let configuration = "<configuration name='c'><resource name='r'><pouInstance name='one' typeName='main'/></resource></configuration>";
     let parsed = parse(&project(&pous, configuration));
     assert_eq!(codes(&parsed.diagnostics), ["R0525"]);
@@ -110,7 +121,12 @@ fn any_namespace_or_prefix_is_read() {
     let expected = native_text(&plain);
     let older = plain.replace("tc6_0201", "tc6_0200");
     let without = plain.replace(" xmlns='http://www.plcopen.org/xml/tc6_0201'", "");
-    let prefixed = plain.replace("xmlns=", "xmlns:ppx=").replace("</", "\u{1}").replace('<', "<ppx:").replace('\u{1}', "</ppx:").replace("<ppx:?xml", "<?xml");
+    let prefixed = plain
+        .replace("xmlns=", "xmlns:ppx=")
+        .replace("</", "\u{1}")
+        .replace('<', "<ppx:")
+        .replace('\u{1}', "</ppx:")
+        .replace("<ppx:?xml", "<?xml");
     for text in [older, without, prefixed] {
         assert_eq!(native_text(&text), expected, "{text}");
     }

@@ -3,17 +3,17 @@
 use std::fmt::Write;
 
 /// A project with these declarations and this body of its only program.
-pub fn program(declarations: &str, language: &str, elements: &[String]) -> String {
+pub(crate) fn program(declarations: &str, language: &str, elements: &[String]) -> String {
     project(&pou("program", "p", declarations, &format!("<{language}>{}</{language}>", elements.concat())), "")
 }
 
 /// A ladder of BOOL variables with these names.
-pub fn ladder(names: &str, elements: &[String]) -> String {
+pub(crate) fn ladder(names: &str, elements: &[String]) -> String {
     program(&locals(names, "BOOL"), "LD", elements)
 }
 
 /// `<localVars>` of one type.
-pub fn locals(names: &str, ty: &str) -> String {
+pub(crate) fn locals(names: &str, ty: &str) -> String {
     let ty = match ty {
         "BOOL" | "INT" | "DINT" | "REAL" | "TIME" => format!("<{ty}/>"),
         derived => format!("<derived name='{derived}'/>"),
@@ -24,12 +24,12 @@ pub fn locals(names: &str, ty: &str) -> String {
 }
 
 /// A POU.
-pub fn pou(kind: &str, name: &str, interface: &str, body: &str) -> String {
+pub(crate) fn pou(kind: &str, name: &str, interface: &str, body: &str) -> String {
     format!("<pou name='{name}' pouType='{kind}'><interface>{interface}</interface><body>{body}</body></pou>")
 }
 
 /// A project of POUs and configurations.
-pub fn project(pous: &str, configurations: &str) -> String {
+pub(crate) fn project(pous: &str, configurations: &str) -> String {
     format!(
         "<?xml version='1.0' encoding='utf-8'?>\n<project xmlns='http://www.plcopen.org/xml/tc6_0201'>\
          <types><dataTypes/><pous>{pous}</pous></types>\
@@ -38,7 +38,7 @@ pub fn project(pous: &str, configurations: &str) -> String {
 }
 
 /// Wires to one place.
-pub fn wires(from: &str) -> String {
+pub(crate) fn wires(from: &str) -> String {
     let mut text = "<connectionPointIn><relPosition x='0' y='10'/>".to_owned();
     for wire in from.split_whitespace() {
         let written = match wire.split_once('.') {
@@ -51,42 +51,42 @@ pub fn wires(from: &str) -> String {
 }
 
 /// An element; further down the greater its number.
-pub fn element(tag: &str, id: u32, attributes: &str, inside: &str) -> String {
+pub(crate) fn element(tag: &str, id: u32, attributes: &str, inside: &str) -> String {
     let position = format!("<position x='{}' y='{}'/>", id * 10, id * 20);
     format!("<{tag} localId='{id}' {attributes}>{position}{inside}</{tag}>\n")
 }
 
 /// The left rail is number 1.
-pub fn rail() -> String {
+pub(crate) fn rail() -> String {
     element("leftPowerRail", 1, "", "<connectionPointOut formalParameter=''/>")
 }
 
-pub fn contact(id: u32, variable: &str, from: &str) -> String {
+pub(crate) fn contact(id: u32, variable: &str, from: &str) -> String {
     contact_with(id, variable, from, "negated='false'")
 }
 
-pub fn contact_with(id: u32, variable: &str, from: &str, attributes: &str) -> String {
+pub(crate) fn contact_with(id: u32, variable: &str, from: &str, attributes: &str) -> String {
     element("contact", id, attributes, &format!("{}<variable>{variable}</variable>", wires(from)))
 }
 
-pub fn coil(id: u32, variable: &str, from: &str) -> String {
+pub(crate) fn coil(id: u32, variable: &str, from: &str) -> String {
     coil_with(id, variable, from, "negated='false'")
 }
 
-pub fn coil_with(id: u32, variable: &str, from: &str, attributes: &str) -> String {
+pub(crate) fn coil_with(id: u32, variable: &str, from: &str, attributes: &str) -> String {
     element("coil", id, attributes, &format!("{}<variable>{variable}</variable>", wires(from)))
 }
 
-pub fn value(id: u32, expression: &str) -> String {
+pub(crate) fn value(id: u32, expression: &str) -> String {
     element("inVariable", id, "negated='false'", &format!("<expression>{expression}</expression>"))
 }
 
-pub fn variable(id: u32, name: &str, from: &str) -> String {
+pub(crate) fn variable(id: u32, name: &str, from: &str) -> String {
     element("outVariable", id, "negated='false'", &format!("{}<expression>{name}</expression>", wires(from)))
 }
 
 /// A block; `inputs` are `IN=3 PT=4`, a pin without wires is `R=`, with a modifier `CU/negated=3`; `outputs` are `Q ET`.
-pub fn block(id: u32, ty: &str, instance: &str, inputs: &str, outputs: &str) -> String {
+pub(crate) fn block(id: u32, ty: &str, instance: &str, inputs: &str, outputs: &str) -> String {
     let instance = if instance.is_empty() { String::new() } else { format!(" instanceName='{instance}'") };
     let mut inside = "<inputVariables>".to_owned();
     for input in inputs.split_whitespace() {

@@ -62,7 +62,8 @@ fn an_element_without_a_name_or_id_is_an_error() {
 #[test]
 fn bodies_in_other_languages_are_refused_by_name() {
     for (language, inside) in [("IL", "<p>LD a</p>"), ("SFC", "<step localId='1'/>")] {
-        let parsed = parse(&project(&pou("functionBlock", "old", "", &format!("<{language}>{inside}</{language}>")), ""));
+        let parsed =
+            parse(&project(&pou("functionBlock", "old", "", &format!("<{language}>{inside}</{language}>")), ""));
         assert_eq!(codes(&parsed.diagnostics), ["R0209"]);
         assert!(parsed.diagnostics[0].message.contains("`old` is in "), "{:?}", parsed.diagnostics);
     }
@@ -74,7 +75,10 @@ fn what_rung_has_not_is_counted_by_kind() {
     let text = program(&locals("a", "BOOL"), "FBD", &[odd(2), odd(3), element("turnstile", 4, "", ""), odd(5)]);
     let parsed = parse(&text);
     let messages: Vec<&str> = parsed.diagnostics.iter().map(|found| found.message.as_str()).collect();
-    assert_eq!(messages, ["Rung has no string literal: used 3 times, first here", "Rung has no element `<turnstile>`: used once here"]);
+    assert_eq!(
+        messages,
+        ["Rung has no string literal: used 3 times, first here", "Rung has no element `<turnstile>`: used once here"]
+    );
     assert_eq!(codes(&parsed.diagnostics), ["R0209", "R0209"]);
 }
 

@@ -58,7 +58,15 @@ fn deep_forks_and_formulas_are_read() {
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics.first());
     assert!(check(&parsed.program).0.is_some());
     let mut sums = vec![value(2, "1")];
-    sums.extend((3..200).map(|id| block(id, "ADD", "", &format!("IN1={} IN2=2", if id == 3 { "2".to_owned() } else { format!("{}.OUT", id - 1) }), "OUT")));
+    sums.extend((3..200).map(|id| {
+        block(
+            id,
+            "ADD",
+            "",
+            &format!("IN1={} IN2=2", if id == 3 { "2".to_owned() } else { format!("{}.OUT", id - 1) }),
+            "OUT",
+        )
+    }));
     sums.push(variable(200, "x", "199.OUT"));
     let parsed = parse(&program(&locals("x", "INT"), "FBD", &sums));
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics.first());

@@ -9,6 +9,7 @@ mod hostile;
 mod networks;
 mod size;
 
+use rung::check::check;
 use rung::diagnostic::Diagnostic;
 use rung::frontend::{self, Parsed, native};
 use rung::source::Source;
@@ -18,11 +19,15 @@ fn parse(text: &str) -> Parsed {
     frontend::parse(&Source::new("test.xml", text))
 }
 
-/// The native text of a file that has no fault.
+/// The native text of a file that has no fault, in reading or in checking.
 fn native_text(text: &str) -> String {
     let parsed = parse(text);
     assert_eq!(codes(&parsed.diagnostics), Vec::<String>::new(), "{:#?}", parsed.diagnostics);
-    native::print(&parsed.program)
+    let (_, found) = check(&parsed.program);
+    let wrong: Vec<&Diagnostic> = found.iter().filter(|found| found.is_error()).collect();
+    let printed = native::print(&parsed.program);
+    assert!(wrong.is_empty(), "{printed}\n{wrong:#?}");
+    printed
 }
 
 /// The rungs of a file that has no fault, each on a line, without `rung`.

@@ -1,13 +1,17 @@
 //! Networks: what is wired how, in which order, as what rungs.
 
 use crate::drawing::{
-    block, coil, coil_with, contact, contact_with, element, ladder, locals, pou, program, project, rail, value, variable, wires,
+    block, coil, coil_with, contact, contact_with, element, ladder, locals, pou, program, project, rail, value,
+    variable, wires,
 };
 use crate::{native_text, parse, rungs};
 
 #[test]
 fn a_series_is_contacts_and_a_coil() {
-    let text = ladder("a b c", &[rail(), contact(2, "a", "1"), contact_with(3, "b", "2", "negated='true'"), coil(4, "c", "3")]);
+    let text = ladder(
+        "a b c",
+        &[rail(), contact(2, "a", "1"), contact_with(3, "b", "2", "negated='true'"), coil(4, "c", "3")],
+    );
     assert_eq!(rungs(&text), ["a /b (c)"]);
 }
 
@@ -15,7 +19,14 @@ fn a_series_is_contacts_and_a_coil() {
 fn several_connections_are_an_or() {
     let text = ladder(
         "a b c d e",
-        &[rail(), contact(2, "a", "1"), contact(3, "b", "1"), contact(4, "c", "2 3"), contact(5, "d", "1"), coil(6, "e", "4 5")],
+        &[
+            rail(),
+            contact(2, "a", "1"),
+            contact(3, "b", "1"),
+            contact(4, "c", "2 3"),
+            contact(5, "d", "1"),
+            coil(6, "e", "4 5"),
+        ],
     );
     assert_eq!(rungs(&text), ["[ [ a | b ] c | d ] (e)"]);
 }
@@ -31,13 +42,15 @@ fn a_seal_in_beside_a_contact_starts_at_the_rail() {
 
 #[test]
 fn what_two_coils_share_is_computed_once() {
-    let text = ladder("a b x y", &[rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "2"), coil(5, "y", "4")]);
+    let text =
+        ladder("a b x y", &[rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "2"), coil(5, "y", "4")]);
     assert_eq!(rungs(&text), ["a [ (x) | b (y) ]"]);
 }
 
 #[test]
 fn a_coil_feeds_further_elements() {
-    let text = ladder("a x b y", &[rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "3"), coil(5, "y", "4")]);
+    let text =
+        ladder("a x b y", &[rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "3"), coil(5, "y", "4")]);
     assert_eq!(rungs(&text), ["a (x) b (y)"]);
 }
 
@@ -72,9 +85,11 @@ fn the_rail_joins_no_rungs_and_rungs_come_from_top_to_bottom() {
 #[test]
 fn rungs_that_take_turns_with_one_variable_are_one() {
     // x comes before y, and y before z, which the first rung's contact feeds too.
-    let entangled = [rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "x", "1"), coil(5, "y", "4"), coil(6, "x", "2")];
+    let entangled =
+        [rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "x", "1"), coil(5, "y", "4"), coil(6, "x", "2")];
     assert_eq!(rungs(&ladder("a x y", &entangled)), ["a >n1> | >n1> (x) | x (y) | >n1> (x)"]);
-    let apart = [rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "1"), coil(5, "y", "4"), coil(6, "z", "2")];
+    let apart =
+        [rail(), contact(2, "a", "1"), coil(3, "x", "2"), contact(4, "b", "1"), coil(5, "y", "4"), coil(6, "z", "2")];
     assert_eq!(rungs(&ladder("a b x y z", &apart)), ["a [ (x) | (z) ]", "b (y)"]);
 }
 
@@ -99,7 +114,10 @@ fn contacts_and_coils_have_their_modifiers() {
 
 #[test]
 fn a_negated_set_coil_inverts_its_power() {
-    let text = ladder("a b c", &[rail(), contact(2, "a", "1"), contact(3, "b", "2"), coil_with(4, "c", "3", "negated='true' storage='set'")]);
+    let text = ladder(
+        "a b c",
+        &[rail(), contact(2, "a", "1"), contact(3, "b", "2"), coil_with(4, "c", "3", "negated='true' storage='set'")],
+    );
     assert_eq!(rungs(&text), ["NOT(IN := [ a b ]).OUT (S c)"]);
 }
 
@@ -159,7 +177,13 @@ fn what_a_pin_shares_with_the_rung_is_a_node() {
     let text = program(
         &declarations,
         "LD",
-        &[rail(), contact(2, "a", "1"), contact(3, "b", "2"), block(4, "CTU", "c", "CU=3 R=2 PV=", "Q CV"), coil(5, "q", "4.Q")],
+        &[
+            rail(),
+            contact(2, "a", "1"),
+            contact(3, "b", "2"),
+            block(4, "CTU", "c", "CU=3 R=2 PV=", "Q CV"),
+            coil(5, "q", "4.Q"),
+        ],
     );
     assert_eq!(rungs(&text), ["a >n1> | >n1> b c:CTU(R := [ >n1> ]) (q)"]);
 }
@@ -272,8 +296,11 @@ fn what_an_enabled_function_gives_to_others_is_kept_in_a_hidden_variable() {
         ],
     );
     let text = native_text(&text);
-    assert!(text.contains("temp   _ADD5_OUT : DINT") || text.contains("temp _ADD5_OUT : DINT"), "{text}");
-    assert!(text.contains("a ADD(IN1 := x, IN2 := y, OUT => _ADD5_OUT) MUL(IN1 := _ADD5_OUT, IN2 := y, OUT => y)"), "{text}");
+    assert!(text.contains("\ntemp   _ADD5_OUT : DINT\n"), "{text}");
+    assert!(
+        text.contains("a ADD(IN1 := x, IN2 := y, OUT => _ADD5_OUT) MUL(IN1 := _ADD5_OUT, IN2 := y, OUT => y)"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -315,8 +342,33 @@ fn feedback_of_a_function_is_kept_from_scan_to_scan() {
         "FBD",
         &[value(2, "1"), block(3, "ADD", "", "IN1=3.OUT IN2=2", "OUT"), variable(4, "x", "3.OUT")],
     );
-    let text = native_text(&text);
-    assert!(text.contains("ADD(IN1 := _ADD3_OUT, IN2 := 1, OUT => _ADD3_OUT, OUT => x)"), "{text}");
+    assert!(native_text(&text).contains("\nvar    _ADD3_OUT : INT\n"));
+    assert_eq!(rungs(&text), ["ADD(IN1 := _ADD3_OUT, IN2 := 1, OUT => _ADD3_OUT) | {x := _ADD3_OUT}"]);
+}
+
+#[test]
+fn an_output_goes_to_several_variables() {
+    let declarations = locals("a", "BOOL") + &locals("t", "TON") + &locals("e f", "TIME") + &locals("x y", "INT");
+    let text = program(
+        &declarations,
+        "LD",
+        &[
+            rail(),
+            contact(2, "a", "1"),
+            block(3, "TON", "t", "IN=2 PT=", "Q ET"),
+            variable(4, "e", "3.ET"),
+            variable(5, "f", "3.ET"),
+            value(6, "x"),
+            block(7, "MOVE", "", "EN=2 IN=6", "ENO OUT"),
+            variable(8, "x", "7.OUT"),
+            variable(9, "y", "7.OUT"),
+        ],
+    );
+    assert_eq!(
+        rungs(&text),
+        ["a >n1> | >n1> t:TON(ET => e) | {f := t.ET} | >n1> MOVE(IN := x, OUT => _MOVE7_OUT) \
+             | >n1> {x := _MOVE7_OUT} | >n1> {y := _MOVE7_OUT}"]
+    );
 }
 
 #[test]
@@ -333,10 +385,7 @@ fn pins_have_negations_and_edges() {
             coil(5, "q", "4.Q1"),
         ],
     );
-    assert_eq!(
-        rungs(&text),
-        ["a b >n1> | NOT(IN := [ >n1> ]).OUT s:SR(R := [ >n1> _R_TRIG4_R:R_TRIG() ]) (q)"]
-    );
+    assert_eq!(rungs(&text), ["a b >n1> | NOT(IN := [ >n1> ]).OUT s:SR(R := [ >n1> _R_TRIG4_R:R_TRIG() ]) (q)"]);
     let single = [rail(), contact(2, "a", "1"), block(4, "SR", "s", "S1/negated=2", "Q1"), coil(5, "q", "4.Q1")];
     assert_eq!(rungs(&program(&declarations, "LD", &single)), ["/a s:SR() (q)"]);
 }
@@ -397,7 +446,12 @@ fn an_in_out_variable_is_written_and_read_at_its_places() {
 #[test]
 fn given_orders_come_before_places() {
     let ordered = |id: u32, name: &str, order: u32| {
-        element("outVariable", id, &format!("executionOrderId='{order}'"), &format!("{}<expression>{name}</expression>", wires("2")))
+        element(
+            "outVariable",
+            id,
+            &format!("executionOrderId='{order}'"),
+            &format!("{}<expression>{name}</expression>", wires("2")),
+        )
     };
     let text = program(
         &locals("a b c", "INT"),
@@ -409,11 +463,20 @@ fn given_orders_come_before_places() {
 
 #[test]
 fn comments_are_titles_of_the_rungs_beside_them() {
-    let comment = |id: u32, text: &str| element("comment", id, "", &format!("<content><p xmlns='x'><![CDATA[{text}]]></p></content>"));
+    let comment = |id: u32, text: &str| {
+        element("comment", id, "", &format!("<content><p xmlns='x'><![CDATA[{text}]]></p></content>"))
+    };
     let long = "long ".repeat(40);
     let text = ladder(
         "a b",
-        &[rail(), comment(2, "first\n rung"), coil(3, "a", "1"), comment(14, "second"), coil(15, "b", "1"), comment(16, &long)],
+        &[
+            rail(),
+            comment(2, "first\n rung"),
+            coil(3, "a", "1"),
+            comment(14, "second"),
+            coil(15, "b", "1"),
+            comment(16, &long),
+        ],
     );
     let parsed = parse(&text);
     let titles: Vec<Option<&str>> = parsed.program.rungs().map(|rung| rung.title.as_deref()).collect();

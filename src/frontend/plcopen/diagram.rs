@@ -55,16 +55,27 @@ pub(super) enum ItemKind {
     LeftRail,
     /// Takes power and does nothing.
     RightRail,
-    Contact { operand: Expression, modifier: Modifier, inputs: Vec<Source> },
+    Contact {
+        operand: Expression,
+        modifier: Modifier,
+        inputs: Vec<Source>,
+    },
     /// A coil, or an `outVariable` or `inOutVariable` with a wire to it.
     Coil(Coil),
     Block(Block),
     /// An `inVariable`; or an `inOutVariable` as what it gives.
     Value(Expression),
     /// Gives on to its continuations.
-    Connector { inputs: Vec<Source> },
-    Continuation { name: String },
-    Jump { label: Option<Name>, inputs: Vec<Source> },
+    Connector {
+        inputs: Vec<Source>,
+    },
+    Continuation {
+        name: String,
+    },
+    Jump {
+        label: Option<Name>,
+        inputs: Vec<Source>,
+    },
     Label(Name),
     Comment(String),
 }
@@ -153,11 +164,14 @@ enum From {
 
 /// The wires of a connection point.
 fn wires<'d>(point: Node<'d, '_>) -> impl Iterator<Item = Wire> + 'd {
-    let connections: Vec<_> = point.all("connection").map(|node| Wire {
-        from: From::Element(node.attribute("refLocalId").and_then(|id| id.parse().ok())),
-        pin: node.attribute("formalParameter").map(str::to_owned),
-        span: node.span(),
-    }).collect();
+    let connections: Vec<_> = point
+        .all("connection")
+        .map(|node| Wire {
+            from: From::Element(node.attribute("refLocalId").and_then(|id| id.parse().ok())),
+            pin: node.attribute("formalParameter").map(str::to_owned),
+            span: node.span(),
+        })
+        .collect();
     connections.into_iter()
 }
 
@@ -216,8 +230,20 @@ impl Reader<'_> {
         let span = node.span();
         let known = matches!(
             node.name(),
-            "leftPowerRail" | "rightPowerRail" | "contact" | "coil" | "block" | "inVariable" | "outVariable" | "inOutVariable"
-                | "connector" | "continuation" | "jump" | "return" | "label" | "comment"
+            "leftPowerRail"
+                | "rightPowerRail"
+                | "contact"
+                | "coil"
+                | "block"
+                | "inVariable"
+                | "outVariable"
+                | "inOutVariable"
+                | "connector"
+                | "continuation"
+                | "jump"
+                | "return"
+                | "label"
+                | "comment"
         );
         if !known {
             if !matches!(node.name(), "vendorElement" | "documentation" | "worksheet") {
@@ -255,7 +281,8 @@ impl Reader<'_> {
     fn kind(&mut self, node: Node<'_, '_>, item: usize) -> Option<ItemKind> {
         let span = node.span();
         let inputs = Vec::new();
-        if matches!(node.name(), "contact" | "coil" | "outVariable" | "inOutVariable" | "connector" | "jump" | "return") {
+        if matches!(node.name(), "contact" | "coil" | "outVariable" | "inOutVariable" | "connector" | "jump" | "return")
+        {
             let wires = node.all("connectionPointIn").flat_map(wires).collect();
             self.wires.push(Pending { item, pin: None, wires });
         }
@@ -306,7 +333,11 @@ impl Reader<'_> {
                     return None;
                 };
                 let label = Name::new(label, span);
-                if node.name() == "label" { ItemKind::Label(label) } else { ItemKind::Jump { label: Some(label), inputs } }
+                if node.name() == "label" {
+                    ItemKind::Label(label)
+                } else {
+                    ItemKind::Jump { label: Some(label), inputs }
+                }
             }
             "return" => ItemKind::Jump { label: None, inputs },
             _ => ItemKind::Comment(node.whole_text()),
@@ -407,7 +438,11 @@ impl Reader<'_> {
         };
         let Some(item) = id.and_then(|id| self.ids.get(&id)).copied() else {
             let id = id.map_or_else(|| "no number".to_owned(), |id| id.to_string());
-            self.report.error(Code::DanglingConnection, wire.span, format!("no element has the localId that this wire comes from: {id}"));
+            self.report.error(
+                Code::DanglingConnection,
+                wire.span,
+                format!("no element has the localId that this wire comes from: {id}"),
+            );
             return None;
         };
         let source = match &self.diagram.items[item].kind {
@@ -449,7 +484,11 @@ impl Reader<'_> {
             },
             _ => {
                 let id = self.diagram.items[item].id;
-                self.report.error(Code::DanglingConnection, wire.span, format!("the element with the localId {id} gives nothing"));
+                self.report.error(
+                    Code::DanglingConnection,
+                    wire.span,
+                    format!("the element with the localId {id} gives nothing"),
+                );
                 return None;
             }
         };

@@ -219,7 +219,8 @@ impl<'a> Parser<'a> {
         match rest.chars().next() {
             Some('\'' | '"') => Err(Fault::NotSupported("string literal")),
             Some('%') => {
-                let end = rest[1..].find(|c: char| c != '.' && !c.is_ascii_alphanumeric()).map_or(rest.len(), |end| end + 1);
+                let end =
+                    rest[1..].find(|c: char| c != '.' && !c.is_ascii_alphanumeric()).map_or(rest.len(), |end| end + 1);
                 let address = address(&rest[..end], self.span)?;
                 self.at += end;
                 let reference = Reference { root: Root::Address(address), steps: Vec::new(), span: self.span };
@@ -237,8 +238,8 @@ impl<'a> Parser<'a> {
         let real = |text: &str| text.contains('.') && !text.contains('#');
         for character in rest.chars() {
             // A sign belongs to an exponent or stands behind a type.
-            let sign = matches!(character, '-' | '+')
-                && (before == '#' || matches!(before, 'e' | 'E') && real(&rest[..end]));
+            let sign =
+                matches!(character, '-' | '+') && (before == '#' || matches!(before, 'e' | 'E') && real(&rest[..end]));
             if !sign && !matches!(character, '.' | '#' | '_') && !character.is_alphanumeric() {
                 break;
             }

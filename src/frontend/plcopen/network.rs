@@ -8,8 +8,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::ladder::{
-    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Literal,
-    Name, Wire,
+    Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
+    Literal, Name, Wire,
 };
 use crate::source::Span;
 
@@ -70,6 +70,9 @@ enum Point {
     /// Behind a vertex that feeds nothing.
     End,
 }
+
+/// Who takes power: a vertex on its left, or at one of its pins.
+type User = (usize, Option<usize>);
 
 /// Where a vertex stands: in the rung (0), or in the circuit of a pin.
 type Region = usize;
@@ -141,9 +144,9 @@ impl<'v> Plan<'v> {
     /// Finds the points, and the region of every edge.
     fn lay(&mut self) {
         // Sets of feeds, each once, with those who take their power.
-        let mut sets: Vec<(&'v [Feed], Vec<(usize, Option<usize>)>)> = Vec::new();
+        let mut sets: Vec<(&'v [Feed], Vec<User>)> = Vec::new();
         let mut known: HashMap<Vec<Feed>, usize> = HashMap::new();
-        let mut note = |feeds: &'v [Feed], user: (usize, Option<usize>)| {
+        let mut note = |feeds: &'v [Feed], user: User| {
             let set = *known.entry(sorted(feeds)).or_insert_with(|| {
                 sets.push((feeds, Vec::new()));
                 sets.len() - 1
@@ -220,18 +223,22 @@ impl<'v> Plan<'v> {
         }
         // Wires from what has other uses too.
         for (set, (feeds, users)) in sets.iter().enumerate().filter(|(_, (feeds, _))| feeds.len() > 1) {
-            let last = feeds.iter().filter_map(|feed| if let Feed::Vertex(vertex) = feed { Some(*vertex) } else { None });
+            let last =
+                feeds.iter().filter_map(|feed| if let Feed::Vertex(vertex) = feed { Some(*vertex) } else { None });
             let last = last.max().unwrap_or(0);
             let first_user = users.iter().map(|(user, _)| *user).min().unwrap_or(0);
             for feed in *feeds {
                 let from = match feed {
                     Feed::Rail => Point::Rail,
-                    Feed::Vertex(vertex) if of_vertex.get(vertex).is_some_and(|sets| sets.len() > 1) => Point::Behind(*vertex),
+                    Feed::Vertex(vertex) if of_vertex.get(vertex).is_some_and(|sets| sets.len() > 1) => {
+                        Point::Behind(*vertex)
+                    }
                     Feed::Vertex(_) => continue,
                 };
                 let owner = owners[set].unwrap_or_else(|| region_of.get(&first_user).copied().unwrap_or(0));
                 let y = if let Feed::Vertex(vertex) = feed { self.vertices[*vertex].y } else { i64::MIN };
-                let edge = Edge { from, to: Point::Net(set), items: Vec::new(), first: last, last, depth: 0, y, pure: true };
+                let edge =
+                    Edge { from, to: Point::Net(set), items: Vec::new(), first: last, last, depth: 0, y, pure: true };
                 *self.uses.entry(from).or_default() += 1;
                 self.edges.entry(owner).or_default().push(edge);
             }
@@ -338,7 +345,7 @@ impl<'v> Plan<'v> {
         // From the left, so that a merged edge is found under the place of its left part.
         let mut moved: Vec<usize> = (0..old.len()).collect();
         for (_, start, ends) in order {
-            if ends.len() > 1 && (adjacent || !ends.iter().all(|end| self.from_rail(&old, &moved, *end))) {
+            if ends.len() > 1 && (adjacent || !ends.iter().all(|end| self.starts_at_rail(&old, &moved, *end))) {
                 continue;
             }
             let places: Vec<usize> = ends.iter().map(|end| resolve(&moved, *end)).collect();
@@ -356,7 +363,8 @@ impl<'v> Plan<'v> {
                     continue;
                 }
             }
-            let depth = places.iter().filter_map(|place| old[*place].as_ref()).map(|edge| edge.depth).max().unwrap_or(0);
+            let depth =
+                places.iter().filter_map(|place| old[*place].as_ref()).map(|edge| edge.depth).max().unwrap_or(0);
             if places.len() > 1 && depth.max(behind.depth) + 1 > MOST_NESTED {
                 continue;
             }
@@ -381,7 +389,7 @@ impl<'v> Plan<'v> {
         changed
     }
 
-    fn from_rail(&self, old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
+    fn starts_at_rail(&self, old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
         old[resolve(moved, place)].as_ref().is_some_and(|edge| edge.from == Point::Rail)
     }
 

@@ -63,7 +63,14 @@ pub(super) fn order(diagram: &Diagram, report: &mut Report) -> Order {
     }
     roots.sort_unstable();
     let count = diagram.items.len();
-    let mut walk = Walk { diagram, report, state: vec![State::New; count], items: Vec::new(), tried: vec![false; count], ahead: 0 };
+    let mut walk = Walk {
+        diagram,
+        report,
+        state: vec![State::New; count],
+        items: Vec::new(),
+        tried: vec![false; count],
+        ahead: 0,
+    };
     for (_, root) in roots {
         walk.pull(root);
     }

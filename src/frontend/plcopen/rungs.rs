@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::Pou;
 use super::diagram::{self, Diagram, ItemKind, Source};
 use super::network::{self, Vertex};
 use super::order::{self, Order, sources};
@@ -12,10 +13,7 @@ use super::report::Report;
 use super::types::{Scope, Signatures};
 use super::vertices::{Builder, value_of};
 use super::xml::Node;
-use super::Pou;
-use crate::ladder::{
-    Circuit, Comment, Expression, ExpressionKind, Name, Reference, Root, Rung, Step, Variable,
-};
+use crate::ladder::{Circuit, Comment, Expression, ExpressionKind, Name, Reference, Root, Rung, Step, Variable};
 use crate::source::Span;
 
 /// The longest comment that becomes the title of a rung, in characters.
@@ -131,13 +129,7 @@ fn groups(diagram: &Diagram, order: &Order, scope: &Scope<'_>, vertices: &[Verte
 }
 
 /// Joins rungs that would have to take turns and touch the same variable, which one of them writes.
-fn join_entangled(
-    diagram: &Diagram,
-    order: &Order,
-    scope: &Scope<'_>,
-    vertices: &[Vertex],
-    sets: &mut Sets,
-) -> bool {
+fn join_entangled(diagram: &Diagram, order: &Order, scope: &Scope<'_>, vertices: &[Vertex], sets: &mut Sets) -> bool {
     let mut extents: HashMap<usize, (usize, usize)> = HashMap::new();
     for (place, vertex) in vertices.iter().enumerate() {
         extents.entry(sets.find(vertex.item)).or_insert((place, place)).1 = place;

@@ -9,7 +9,8 @@ use super::xml::Node;
 use crate::diagnostic::Code;
 use crate::ladder::functions::Function;
 use crate::ladder::{
-    Argument, BlockCall, Branch, Circuit, ContactKind, Element, ElementKind, ExpressionKind, Name, Reference, Rung, Wire,
+    Argument, BlockCall, Branch, Circuit, ContactKind, Element, ElementKind, ExpressionKind, Name, Reference, Rung,
+    Wire,
 };
 
 /// The rungs of a body.
@@ -46,7 +47,9 @@ fn element(node: Node<'_, '_>, signatures: &Signatures, report: &mut Report) -> 
         report.read(expression::expression(text, span), span)
     };
     let says = |word: &str| {
-        ["kind", "storage", "edge", "type"].iter().any(|name| node.attribute(name).is_some_and(|value| value.eq_ignore_ascii_case(word)))
+        ["kind", "storage", "edge", "type"]
+            .iter()
+            .any(|name| node.attribute(name).is_some_and(|value| value.eq_ignore_ascii_case(word)))
     };
     let negated = node.flag("negated") || says("negated");
     let rising = if says("rising") { Some(true) } else { says("falling").then_some(false) };
@@ -113,6 +116,7 @@ fn is_output(block: &str, pin: &str, signatures: &Signatures) -> bool {
     if signatures.is_known_block(block) {
         return signatures.is_output(block, pin);
     }
-    let names: &[&str] = if Function::from_name(block).is_some() { &["OUT", "ENO"] } else { &["OUT", "ENO", "Q", "ET", "CV"] };
+    let names: &[&str] =
+        if Function::from_name(block).is_some() { &["OUT", "ENO"] } else { &["OUT", "ENO", "Q", "ET", "CV"] };
     names.iter().any(|name| name.eq_ignore_ascii_case(pin))
 }

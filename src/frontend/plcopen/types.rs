@@ -7,8 +7,8 @@ use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, ParameterType, ResultType, StandardFunction};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{
-    Expression, ExpressionKind, Literal, Name, Program, Reference, Root, Step, TypeKind, TypeReference, UnaryOperator, Unit,
-    UnitKind, Variable, VariableClass, Width, key,
+    Expression, ExpressionKind, Literal, Name, Program, Reference, Root, Step, TypeKind, TypeReference, UnaryOperator,
+    Unit, UnitKind, Variable, VariableClass, Width, key,
 };
 use crate::source::Span;
 
@@ -43,7 +43,10 @@ fn by_name(variables: &[Variable]) -> HashMap<String, TypeReference> {
 }
 
 fn addresses(variables: &[Variable]) -> HashMap<String, String> {
-    variables.iter().filter_map(|variable| Some((variable.name.key(), variable.address.as_ref()?.to_string()))).collect()
+    variables
+        .iter()
+        .filter_map(|variable| Some((variable.name.key(), variable.address.as_ref()?.to_string())))
+        .collect()
 }
 
 impl Signatures {
@@ -80,7 +83,8 @@ impl Signatures {
 
     /// Whether what a box of that type does is nothing but what its pins show.
     pub(super) fn is_standard(&self, name: &str) -> bool {
-        !self.units.contains_key(&key(name)) && (StandardBlock::from_name(name).is_some() || Function::from_name(name).is_some())
+        !self.units.contains_key(&key(name))
+            && (StandardBlock::from_name(name).is_some() || Function::from_name(name).is_some())
     }
 
     /// Whether anything declares a block of that name; an unknown one may have any pins.
@@ -177,7 +181,9 @@ fn first_bool(pins: &[(Name, TypeReference)]) -> Option<String> {
 /// Of two types the one that holds the values of both, as far as there is one.
 fn wider(one: TypeReference, other: TypeReference) -> TypeReference {
     // From narrow to wide; the order of types that do not widen to each other does not matter, since checking refuses them.
-    use Elementary::{Bool, Byte, Dint, Dword, Int, Lint, Lreal, Lword, Real, Sint, Time, Udint, Uint, Ulint, Usint, Word};
+    use Elementary::{
+        Bool, Byte, Dint, Dword, Int, Lint, Lreal, Lword, Real, Sint, Time, Udint, Uint, Ulint, Usint, Word,
+    };
     const WIDTHS: [Elementary; 16] =
         [Bool, Usint, Sint, Byte, Uint, Int, Word, Udint, Dint, Dword, Ulint, Lint, Lword, Real, Lreal, Time];
     let rank = |ty: &TypeReference| {
@@ -270,7 +276,9 @@ impl<'s> Scope<'s> {
             },
             ExpressionKind::Read(reference) => self.reference(reference),
             ExpressionKind::Unary(UnaryOperator::Not | UnaryOperator::Negate, operand) => self.value(operand),
-            ExpressionKind::Binary(operator, ..) if operator.is_comparison() => Some(elementary(Elementary::Bool, span)),
+            ExpressionKind::Binary(operator, ..) if operator.is_comparison() => {
+                Some(elementary(Elementary::Bool, span))
+            }
             ExpressionKind::Binary(_, left, right) => match (self.value(left), self.value(right)) {
                 (Some(left), Some(right)) => Some(wider(left, right)),
                 (left, right) => left.or(right),
@@ -292,7 +300,9 @@ impl<'s> Scope<'s> {
 /// The name of an argument that is given by its place.
 fn positional(function: &str, place: usize) -> String {
     let parameter = match Function::from_name(function) {
-        Some(Function::Standard(function)) => function.parameters().get(place).map(|parameter| parameter.name.to_owned()),
+        Some(Function::Standard(function)) => {
+            function.parameters().get(place).map(|parameter| parameter.name.to_owned())
+        }
         _ => None,
     };
     parameter.unwrap_or_else(|| format!("IN{}", place + 1))

@@ -4,7 +4,8 @@
 //! that is needed once and has no EN stands as a formula where it is needed; else it is a box, and what others read of it
 //! is kept in a hidden variable.
 
-use std::collections::HashMap;
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
 
 use super::diagram::{Block, Coil, Diagram, Edge, ItemKind, Modifier, Source, Storage, negate};
 use super::network::{Feed, PowerPin, Vertex, coil_kind};
@@ -15,8 +16,8 @@ use crate::diagnostic::Code;
 use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::{
-    Argument, BinaryOperator, BlockCall, ContactKind, ElementKind, Expression, ExpressionKind, FunctionArgument, Literal,
-    Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire,
+    Argument, BinaryOperator, BlockCall, ContactKind, ElementKind, Expression, ExpressionKind, FunctionArgument,
+    Literal, Name, Reference, Step, TypeReference, UnaryOperator, Variable, VariableClass, Wire, key,
 };
 use crate::source::Span;
 
@@ -24,6 +25,8 @@ use crate::source::Span;
 pub(super) const INVERTER: &str = "NOT";
 /// How deep formulas are put into each other.
 const MOST_NESTED: usize = 24;
+/// How many operands are looked at for the type of one hidden variable: functions in circles have any number.
+const MOST_LOOKS: usize = 1000;
 
 /// One use of what a block gives.
 struct Use {
@@ -58,8 +61,12 @@ pub(super) struct Builder<'d, 'r> {
     /// For each block the output that gives the power on its right.
     main: Vec<Option<usize>>,
     uses: HashMap<usize, Vec<Use>>,
-    /// Hidden variables, by block and output.
-    kept: HashMap<(usize, usize), Name>,
+    /// Places of hidden variables, by block and output.
+    kept: HashMap<(usize, usize), usize>,
+    /// The names of hidden variables and instances, as they are compared.
+    taken: HashSet<String>,
+    /// How many operands may still be looked at for a type.
+    looks: Cell<usize>,
     /// The last vertex with an effect.
     last: Option<usize>,
 }
@@ -79,6 +86,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             main: vec![None; count],
             uses: HashMap::new(),
             kept: HashMap::new(),
+            taken: HashSet::new(),
+            looks: Cell::new(0),
             last: None,
         };
         builder.find_uses();
@@ -169,9 +178,11 @@ impl<'d, 'r> Builder<'d, 'r> {
             && !enabled
             && uses.iter().all(|used| Some(used.output) != eno && Some(used.output) == result)
             && block.inputs.iter().any(|input| !input.sources.is_empty())
-            && block.inputs.iter().enumerate().all(|(pin, input)| {
-                !takes_power(self.scope, block, pin) && !(input.in_out && !input.sources.is_empty())
-            })
+            && block
+                .inputs
+                .iter()
+                .enumerate()
+                .all(|(pin, input)| !takes_power(self.scope, block, pin) && (!input.in_out || input.sources.is_empty()))
     }
 
     fn main_output(&self, block: &Block, uses: &[Use]) -> Option<usize> {
@@ -181,7 +192,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             return Some(eno);
         }
         let first = self.scope.signatures.power_output(&block.type_name.text).and_then(|pin| block.output(&pin));
-        let first = first.filter(|first| used(*first)).or_else(|| (0..block.outputs.len()).find(|output| used(*output)));
+        let first =
+            first.filter(|first| used(*first)).or_else(|| (0..block.outputs.len()).find(|output| used(*output)));
         first.filter(plain)
     }
 
@@ -308,8 +320,12 @@ impl<'d, 'r> Builder<'d, 'r> {
         // The edge of what is inverted is the other edge.
         let rising = (edge == Edge::Rising) != modifier.negated;
         if let [Feed::Vertex(vertex)] = feeds.as_slice()
-            && let Some(Vertex { kind: ElementKind::Contact { kind: kind @ ContactKind::Open, .. }, feeds: rail, item: of, .. }) =
-                self.vertices.get_mut(*vertex)
+            && let Some(Vertex {
+                kind: ElementKind::Contact { kind: kind @ ContactKind::Open, .. },
+                feeds: rail,
+                item: of,
+                ..
+            }) = self.vertices.get_mut(*vertex)
             && *of == item
             && rail == &[Feed::Rail]
         {
@@ -379,6 +395,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 && !pin.negated
                 && !coil.modifier.negated
                 && let ElementKind::Block(call) = &mut self.vertices[vertex].kind
+                && !call.arguments.iter().any(|wired| {
+                    matches!(wired.wire, Wire::Output(_)) && wired.pin.text.eq_ignore_ascii_case(&pin.name.text)
+                })
             {
                 let span = self.diagram.items[item].span;
                 call.arguments.push(Argument { pin: pin.name.clone(), wire: Wire::Output(coil.target.clone()), span });
@@ -430,7 +449,8 @@ impl<'d, 'r> Builder<'d, 'r> {
             Some(instance) => {
                 // The power on the left would go to the first BOOL input; one without a wire keeps its value.
                 let power = self.scope.signatures.power_input(&name.text);
-                let open = power.filter(|power| block.input(power).is_none_or(|pin| block.inputs[pin].sources.is_empty()));
+                let open =
+                    power.filter(|power| block.input(power).is_none_or(|pin| block.inputs[pin].sources.is_empty()));
                 if let Some(open) = open {
                     let open = Name::new(open, span);
                     let value = read_member(instance, &open, span);
@@ -481,11 +501,16 @@ impl<'d, 'r> Builder<'d, 'r> {
     fn is_read(&self, item: usize, output: usize) -> bool {
         let step = self.order.step[item];
         let uses = self.uses.get(&item).map_or(&[][..], Vec::as_slice);
-        uses.iter().filter(|used| used.output == output).any(|used| {
+        let mut at_once = 0;
+        let other = uses.iter().filter(|used| used.output == output).any(|used| {
             let behind = self.order.step[used.user] > step;
             let taken = behind && used.power && self.main[item] == Some(output) && !self.negated(item, output);
-            !taken && !(behind && self.is_taken_at_once(item, used))
-        })
+            let wired = behind && self.is_taken_at_once(item, used);
+            at_once += usize::from(wired);
+            !taken && !wired
+        });
+        // An output is wired once.
+        other || at_once > 1
     }
 
     /// Whether a variable takes an output before anything else has an effect.
@@ -508,8 +533,8 @@ impl<'d, 'r> Builder<'d, 'r> {
 
     /// The hidden variable that keeps what a function gives.
     fn keep(&mut self, item: usize, output: usize) -> Name {
-        if let Some(name) = self.kept.get(&(item, output)) {
-            return name.clone();
+        if let Some(place) = self.kept.get(&(item, output)) {
+            return self.hidden[*place].name.clone();
         }
         let span = self.diagram.items[item].span;
         let Some(block) = self.block(item) else { return Name::new("_", span) };
@@ -520,19 +545,18 @@ impl<'d, 'r> Builder<'d, 'r> {
         // What is read before it is written holds its value from one scan to the next.
         let back = uses.iter().any(|used| used.output == output && self.order.step[used.user] <= self.order.step[item]);
         let class = if back { VariableClass::Memory } else { VariableClass::Temporary };
+        self.looks.set(MOST_LOOKS);
         let ty = self.type_of(item, output, 0).unwrap_or_else(|| elementary(Elementary::Int, span));
-        let variable = Variable { class, name: name.clone(), ty: Some(ty), address: None, initial: None, retain: false, span };
+        let variable =
+            Variable { class, name: name.clone(), ty: Some(ty), address: None, initial: None, retain: false, span };
+        self.kept.insert((item, output), self.hidden.len());
         self.hidden.push(variable);
-        self.kept.insert((item, output), name.clone());
         name
     }
 
     /// A name that the unit does not declare.
-    fn hidden_name(&self, mut name: String) -> String {
-        let taken = |name: &str| {
-            self.scope.declares(name) || self.hidden.iter().any(|hidden| hidden.name.text.eq_ignore_ascii_case(name))
-        };
-        while taken(&name) {
+    fn hidden_name(&mut self, mut name: String) -> String {
+        while self.scope.declares(&name) || !self.taken.insert(key(&name)) {
             name.push('_');
         }
         name
@@ -551,28 +575,33 @@ impl<'d, 'r> Builder<'d, 'r> {
             };
             operands.push((input.name.text.clone(), ty));
         }
-        let given = self.scope.signatures.result(&block.type_name.text, &block.outputs[output].name.text, &operands, span);
+        let given =
+            self.scope.signatures.result(&block.type_name.text, &block.outputs[output].name.text, &operands, span);
         given.or_else(|| {
             let uses = self.uses.get(&item).map_or(&[][..], Vec::as_slice);
-            uses.iter().filter(|used| used.output == output).find_map(|used| match &self.diagram.items[used.user].kind {
-                _ if used.power => Some(elementary(Elementary::Bool, span)),
-                ItemKind::Coil(coil) => {
-                    let kind = ExpressionKind::Read(coil.target.clone());
-                    self.scope.value(&Expression { kind, span })
+            uses.iter().filter(|used| used.output == output).find_map(|used| {
+                match &self.diagram.items[used.user].kind {
+                    _ if used.power => Some(elementary(Elementary::Bool, span)),
+                    ItemKind::Coil(coil) => {
+                        let kind = ExpressionKind::Read(coil.target.clone());
+                        self.scope.value(&Expression { kind, span })
+                    }
+                    ItemKind::Block(user) => {
+                        let pin = user.inputs.iter().find(|pin| pin.sources.contains(&Source::Output(item, output)))?;
+                        self.scope.signatures.pin(&user.type_name.text, &pin.name.text, span)
+                    }
+                    _ => None,
                 }
-                ItemKind::Block(user) => {
-                    let pin = user.inputs.iter().find(|pin| pin.sources.contains(&Source::Output(item, output)))?;
-                    self.scope.signatures.pin(&user.type_name.text, &pin.name.text, span)
-                }
-                _ => None,
             })
         })
     }
 
     fn source_type(&self, source: Source, depth: usize) -> Option<TypeReference> {
-        if depth > MOST_NESTED {
+        let looks = self.looks.get();
+        if depth > MOST_NESTED || looks == 0 {
             return None;
         }
+        self.looks.set(looks - 1);
         match source {
             Source::Rail | Source::Power(_) => None,
             Source::Value(item) => self.scope.value(value_of(&self.diagram.items[item].kind)?),
@@ -586,10 +615,7 @@ impl<'d, 'r> Builder<'d, 'r> {
                 match &block.instance {
                     Some(_) => self.scope.signatures.pin(&block.type_name.text, &block.outputs[output].name.text, span),
                     None => match self.kept.get(&(item, output)) {
-                        Some(name) => {
-                            let kept = self.hidden.iter().find(|hidden| hidden.name.text == name.text);
-                            kept.and_then(|kept| kept.ty.clone())
-                        }
+                        Some(place) => self.hidden[*place].ty.clone(),
                         None => self.type_of(item, output, depth + 1),
                     },
                 }
@@ -620,7 +646,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 let pin = &block.outputs[output];
                 let value = match &block.instance {
                     _ if self.forms[item] != Form::Box => self.formula(item, block),
-                    Some(instance) if !pin.name.text.eq_ignore_ascii_case("ENO") => read_member(instance, &pin.name, span),
+                    Some(instance) if !pin.name.text.eq_ignore_ascii_case("ENO") => {
+                        read_member(instance, &pin.name, span)
+                    }
                     _ => {
                         let variable = self.keep(item, output);
                         Expression { kind: ExpressionKind::Read(Reference::of_name(variable)), span }
@@ -666,9 +694,9 @@ impl<'d, 'r> Builder<'d, 'r> {
                 return negate(operands.remove(0).1);
             }
             _ => {
-                let arguments = operands.into_iter().map(|(name, value)| {
-                    FunctionArgument { parameter: (!in_order).then_some(name), value }
-                });
+                let arguments = operands
+                    .into_iter()
+                    .map(|(name, value)| FunctionArgument { parameter: (!in_order).then_some(name), value });
                 ExpressionKind::Call { function: block.type_name.clone(), arguments: arguments.collect() }
             }
         };

@@ -6,9 +6,9 @@
 
 use std::borrow::Cow;
 
-use quick_xml::{Reader, XmlVersion};
 use quick_xml::escape::resolve_predefined_entity;
 use quick_xml::events::{BytesStart, Event};
+use quick_xml::{Reader, XmlVersion};
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -192,7 +192,8 @@ impl<'a> Reading<'a> {
                             Some(text) => Cow::Borrowed(text),
                             None => {
                                 let problem = malformed(span, "this entity is not defined".to_owned());
-                                return Err(problem.hint("only &lt; &gt; &amp; &quot; &apos; and character references are read"));
+                                return Err(problem
+                                    .hint("only &lt; &gt; &amp; &quot; &apos; and character references are read"));
                             }
                         },
                     };
@@ -282,7 +283,10 @@ impl<'a> Reading<'a> {
             let value = match (plain, raw.contains(['&', '\n', '\t', '\r'])) {
                 (Some(plain), false) => Cow::Borrowed(plain),
                 _ => Cow::Owned(
-                    attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|error| malformed(span, error.to_string()))?.into_owned(),
+                    attribute
+                        .normalized_value(XmlVersion::Implicit1_0)
+                        .map_err(|error| malformed(span, error.to_string()))?
+                        .into_owned(),
                 ),
             };
             self.document.attributes.push((key.rsplit_once(':').map_or(key, |(_, local)| local), value));
@@ -302,8 +306,7 @@ impl<'a> Reading<'a> {
         }
         let index = u32::try_from(index).unwrap_or(NONE);
         let (text, text_span) = (Cow::Borrowed(""), Span::default());
-        let data =
-            Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span };
+        let data = Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span };
         self.document.elements.push(data);
         if let Some(parent) = self.open.last().copied() {
             let elements = &mut self.document.elements;
