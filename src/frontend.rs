@@ -3,6 +3,7 @@
 //! One module a format. A front end is pure, and must never panic: whatever the bytes, the answer is a program,
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
+mod graph;
 mod missing;
 pub mod native;
 pub mod plcopen;

@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::expression;
 use super::xml::Node;
 use super::{Pou, Report};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::graph::expression;
 use crate::ladder::{Expression, ExpressionKind, Literal, Name, Program, ProgramInstance, Task, UnitKind, key};
 use crate::source::Span;
 

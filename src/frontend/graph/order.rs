@@ -185,7 +185,11 @@ impl Walk<'_, '_> {
         if circle.len() > ids.len() {
             ids.push("…".to_owned());
         }
-        let message = format!("power runs in a circle through the elements with the localIds {}", ids.join(", "));
+        let message = format!(
+            "power runs in a circle through the elements with the {}s {}",
+            self.diagram.id_name,
+            ids.join(", ")
+        );
         let problem = Diagnostic::new(Code::PowerCycle, self.diagram.items[*first].span, message);
         self.report.push(problem.hint("only through a block can power come back, with its value of the scan before"));
     }
