@@ -16,9 +16,9 @@ use std::collections::HashSet;
 
 use self::xml::{Document, Node};
 use super::Parsed;
-use super::graph;
 use super::graph::report::Report;
 use super::graph::types::Signatures;
+use super::{graph, instances};
 use crate::diagnostic::Code;
 use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
 use crate::source::{Source, Span};
@@ -75,7 +75,7 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     let (types, comments) = declarations.finish();
     program.types = types;
     program.comments = comments;
-    let idle = configuration::read(root, program, &mut pous, report);
+    configuration::read(root, program, report);
     check_externals(&pous, &program.globals, report);
 
     let signatures = Signatures::new(program, pous.iter().map(|pou| &pou.unit));
@@ -95,7 +95,7 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     if program.units.is_empty() {
         report.error(Code::BadElement, root.span(), "this project has no program");
     }
-    configuration::switch_off(program, &idle, report);
+    instances::settle(program, report);
     program.comments.sort_by_key(|comment| comment.span);
 }
 
