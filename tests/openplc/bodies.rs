@@ -67,7 +67,7 @@ fn a_function_with_execution_control_has_en_and_eno() {
         variable("V", "T#1s", "input", ("B", "IN")),
         variable("W", "t", "output", ("B", "OUT")),
         variable("X", "", "input", ("B", "IN")),
-        coil("b", "default", (300, 0)),
+        coil("b", "default", (300, 40)),
         right(),
     ];
     // The wires of variables are those that the variables name, whether they are drawn or not.

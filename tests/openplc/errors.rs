@@ -4,7 +4,7 @@ use rung::diagnostic::render;
 use rung::source::Source;
 use serde_json::json;
 
-use crate::drawing::{block, coil, contact, ladder, left, node, right};
+use crate::drawing::{block, coil, contact, ladder, left, node};
 use crate::{codes, parse};
 
 /// The codes and messages of a file.

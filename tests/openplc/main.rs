@@ -10,10 +10,9 @@ mod projects;
 
 #[path = "../support"]
 mod support {
+    #[expect(dead_code, reason = "random programs, which are not needed here, need more of it")]
     pub(crate) mod dice;
-    pub(crate) mod oracle;
     pub(crate) mod random_stimuli;
-    pub(crate) mod rig;
 }
 
 use rung::check::check;

@@ -112,6 +112,10 @@ impl Reader<'_> {
             if let Some((_, first)) = self.ids.get(&*id) {
                 let problem = Diagnostic::new(Code::DuplicateId, span, format!("two nodes have the id `{id}`"));
                 self.report.push(problem.related(*first, "the first is here"));
+                // Wires go to the first.
+                if let Node::Item(item) = found {
+                    self.diagram.faulty.insert(item);
+                }
             } else {
                 self.ids.insert(id.clone().into_owned(), (found, span));
                 named.push((id, node));
