@@ -26,7 +26,7 @@ pub(super) const INVERTER: &str = "NOT";
 /// How deep formulas are put into each other.
 const MOST_NESTED: usize = 24;
 /// How many operands are looked at for the type of one hidden variable: functions in circles have any number.
-const MOST_LOOKS: usize = 1000;
+const MOST_LOOKS: usize = 64;
 
 /// One use of what a block gives.
 struct Use {
