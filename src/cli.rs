@@ -6,6 +6,7 @@
 mod bench;
 mod build;
 mod check;
+mod convert;
 mod duration;
 mod fmt;
 mod generate;
@@ -37,6 +38,7 @@ enum Command {
     Bench(bench::Arguments),
     Build(build::Arguments),
     Check(check::Arguments),
+    Convert(convert::Arguments),
     Fmt(fmt::Arguments),
     Gen(generate::Arguments),
     Show(show::Arguments),
@@ -53,6 +55,7 @@ pub fn main() -> ExitCode {
         Command::Bench(arguments) => bench::run(arguments),
         Command::Build(arguments) => build::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Convert(arguments) => convert::run(arguments),
         Command::Fmt(arguments) => fmt::run(arguments),
         Command::Gen(arguments) => generate::run(arguments),
         Command::Show(arguments) => show::run(arguments),

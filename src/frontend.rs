@@ -48,3 +48,8 @@ pub fn parse(source: &Source) -> Parsed {
     let found = FRONTENDS.iter().find(|frontend| (frontend.recognises)(source.text()));
     (found.map_or(native::parse as fn(&Source) -> Parsed, |frontend| frontend.parse))(source)
 }
+
+/// Whether a text looks like native text: like none of the other formats.
+pub fn is_native(text: &str) -> bool {
+    FRONTENDS.split_last().is_none_or(|(_, others)| !others.iter().any(|frontend| (frontend.recognises)(text)))
+}

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::{Failure, load, print, report, write_whole};
-use crate::diagnostic::{self, any_error};
-use crate::frontend::native;
-use crate::ladder::Origin;
+use crate::diagnostic::{self, Code, Diagnostic, any_error};
+use crate::frontend::{self, native};
+use crate::source::Span;
 
 /// Writes programs in the canonical form of the native text
 #[derive(Debug, clap::Args)]
@@ -30,17 +30,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Err(other) => return Err(other),
         };
+        if !frontend::is_native(loaded.source.text()) {
+            let problem = Diagnostic::new(Code::OtherFormat, Span::default(), "this file is not in native text")
+                .hint("`rung convert` writes it as native text, to a file of its own");
+            report(&diagnostic::render(&loaded.source, &[problem]));
+            failed = true;
+            continue;
+        }
         if any_error(&loaded.diagnostics) {
             report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
             failed = true;
             continue;
         }
         let text = native::print(&loaded.program);
-        // A file of another tool stays as it is; what it is in native text goes to the standard output.
-        if loaded.program.origin == Origin::Imported && !arguments.check {
-            print(&text)?;
-            continue;
-        }
         let changed = text != loaded.source.text();
         if arguments.check {
             if changed {

@@ -7,7 +7,7 @@
 pub(super) mod diagram;
 pub(super) mod expression;
 mod network;
-mod order;
+pub(super) mod order;
 pub(super) mod report;
 mod rungs;
 pub(super) mod types;

@@ -10,7 +10,10 @@ mod configuration;
 mod declarations;
 mod diagram;
 mod textual;
+mod write;
 mod xml;
+
+pub use self::write::print;
 
 use std::collections::HashSet;
 
@@ -18,6 +21,7 @@ use self::xml::{Document, Node};
 use super::Parsed;
 use super::graph::report::Report;
 use super::graph::types::Signatures;
+use super::structured_text::{self, Scope};
 use super::{graph, instances};
 use crate::diagnostic::Code;
 use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
@@ -80,9 +84,11 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
 
     let signatures = Signatures::new(program, pous.iter().map(|pou| &pou.unit));
     let mut bodies = Vec::new();
+    let mut comments = std::mem::take(&mut program.comments);
     for pou in &pous {
-        bodies.push(body(pou, &signatures, &mut program.comments, report));
+        bodies.push(body(pou, program, &signatures, &mut comments, report));
     }
+    program.comments = comments;
     for (mut pou, (rungs, hidden)) in pous.into_iter().zip(bodies) {
         pou.unit.rungs.extend(rungs);
         pou.unit.variables.extend(hidden);
@@ -102,6 +108,7 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
 /// The rungs of a POU, and the variables that wires in them need.
 fn body(
     pou: &Pou<'_, '_>,
+    program: &Program,
     signatures: &Signatures,
     comments: &mut Vec<Comment>,
     report: &mut Report,
@@ -129,7 +136,7 @@ fn body(
                 rungs.0.extend(more);
                 rungs.1.extend(hidden);
             }
-            "ST" => rungs.0.extend(structured_text(content, name, report)),
+            "ST" => rungs.0.extend(statements(content, pou, program, comments, report)),
             "IL" | "SFC" => {
                 let problem = format!("the body of `{name}` is in {language}, which Rung does not read");
                 report.error(Code::NotSupported, content.span(), problem);
@@ -144,15 +151,24 @@ fn body(
     rungs
 }
 
-/// The rungs of a body in structured text: `content` is `<ST>`, and the text stands in the element that
-/// [`Node::text_node`] gives, from its [`Node::text_span`] on.
-fn structured_text(content: Node<'_, '_>, name: &str, report: &mut Report) -> Vec<Rung> {
+/// The rungs of a body in structured text.
+fn statements(
+    content: Node<'_, '_>,
+    pou: &Pou<'_, '_>,
+    program: &Program,
+    comments: &mut Vec<Comment>,
+    report: &mut Report,
+) -> Vec<Rung> {
     let text = content.text_node();
-    if !text.text().is_empty() {
-        let message = format!("the body of `{name}` is in structured text, which is not read in PLCopen files yet");
-        report.error(Code::NotSupported, text.text_span(), message);
-    }
-    Vec::new()
+    let result = match &pou.unit.kind {
+        UnitKind::Function { result: Some(result) } => Some((&pou.unit.name, result)),
+        _ => None,
+    };
+    let scope = Scope { types: &program.types, globals: &program.globals, variables: &pou.unit.variables, result };
+    let body = structured_text::body(text.text(), &scope, &|span| text.place(span));
+    comments.extend(body.comments);
+    body.diagnostics.into_iter().for_each(|problem| report.push(problem));
+    body.rungs
 }
 
 /// An external variable is the global of its name, which has to be there.

@@ -11,7 +11,7 @@ mod declarations;
 mod enable;
 mod parser;
 mod place;
-mod print;
+pub(in crate::frontend) mod print;
 mod recognise;
 
 pub use body::{Body, Scope, body};

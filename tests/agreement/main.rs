@@ -2,6 +2,7 @@
 
 mod arrays;
 mod boxes;
+mod corpus;
 mod elements;
 mod examples;
 mod faults;
@@ -24,6 +25,7 @@ mod support {
     pub(crate) mod random_program;
     pub(crate) mod random_stimuli;
     pub(crate) mod rig;
+    pub(crate) mod same_trace;
     pub(crate) mod script;
     pub(crate) mod step_table;
 }

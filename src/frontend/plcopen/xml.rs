@@ -42,6 +42,8 @@ struct Data<'a> {
     next: u32,
     text: Cow<'a, str>,
     text_span: Span,
+    /// Where its text stands in the file as it is, without anything escaped.
+    verbatim: Option<usize>,
 }
 
 /// One element of a tree.
@@ -108,9 +110,14 @@ impl<'d, 'a> Node<'d, 'a> {
         self.data().text.trim()
     }
 
-    /// Where its text starts and ends.
-    pub(super) fn text_span(self) -> Span {
-        self.data().text_span
+    /// Where in the file what a span of its [`Node::text`] shows stands; all of the text where parts of it are escaped.
+    pub(super) fn place(self, span: Span) -> Span {
+        let data = self.data();
+        let blanks = data.text.len() - data.text.trim_start().len();
+        data.verbatim.map_or(data.text_span, |start| {
+            let at = |place: u32| start + blanks + place as usize;
+            Span::new(at(span.start), at(span.end))
+        })
     }
 
     /// The text of it and all in it (documentation is XHTML), without blanks around it.
@@ -182,8 +189,8 @@ impl<'a> Reading<'a> {
                     self.end();
                 }
                 Ok(Event::End(_)) => self.end(),
-                Ok(Event::Text(text)) => self.add_text(text.into_inner(), span)?,
-                Ok(Event::CData(text)) => self.add_text(text.into_inner(), span)?,
+                Ok(Event::Text(text)) => self.add_text(text.into_inner(), span, Some(start))?,
+                Ok(Event::CData(text)) => self.add_text(text.into_inner(), span, Some(start + "<![CDATA[".len()))?,
                 Ok(Event::GeneralRef(reference)) => {
                     let character = reference.resolve_char_ref().map_err(|error| malformed(span, error.to_string()))?;
                     let text = match character {
@@ -197,7 +204,7 @@ impl<'a> Reading<'a> {
                             }
                         },
                     };
-                    self.add_text(text, span)?;
+                    self.add_text(text, span, None)?;
                 }
                 Ok(Event::Comment(text)) if self.skipped == 0 => {
                     let text = text.into_inner();
@@ -306,7 +313,9 @@ impl<'a> Reading<'a> {
         }
         let index = u32::try_from(index).unwrap_or(NONE);
         let (text, text_span) = (Cow::Borrowed(""), Span::default());
-        let data = Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span };
+        let verbatim = None;
+        let data =
+            Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span, verbatim };
         self.document.elements.push(data);
         if let Some(parent) = self.open.last().copied() {
             let elements = &mut self.document.elements;
@@ -320,7 +329,8 @@ impl<'a> Reading<'a> {
         Ok(())
     }
 
-    fn add_text(&mut self, text: Cow<'a, str>, span: Span) -> Result<(), Diagnostic> {
+    /// Adds to the text of the open element; `verbatim` is where it starts in the file if nothing in it is escaped.
+    fn add_text(&mut self, text: Cow<'a, str>, span: Span, verbatim: Option<usize>) -> Result<(), Diagnostic> {
         let blank = text.trim().is_empty();
         if self.skipped > 0 {
             return Ok(());
@@ -331,10 +341,12 @@ impl<'a> Reading<'a> {
         let data = &mut self.document.elements[*open as usize];
         if data.text.is_empty() {
             if !blank {
+                data.verbatim = verbatim.filter(|_| matches!(text, Cow::Borrowed(_)));
                 data.text = text;
                 data.text_span = span;
             }
         } else {
+            data.verbatim = None;
             data.text.to_mut().push_str(&text);
             data.text_span = data.text_span.to(span);
         }

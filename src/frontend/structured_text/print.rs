@@ -10,12 +10,14 @@ mod names;
 mod order;
 mod power;
 mod rungs;
-mod uses;
+pub(in crate::frontend) mod uses;
 mod words;
 
-use names::Names;
+pub(in crate::frontend) use declarations::{Instances, Used, instances, used};
+pub(in crate::frontend) use names::Names;
+pub(in crate::frontend) use order::of_units;
 use rungs::Rungs;
-use words::Words;
+pub(in crate::frontend) use words::Words;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{Comment, Program, Rung, Unit, UnitKind, key};
@@ -71,9 +73,7 @@ fn unit(
     text.push_str(&format!("{word} {name}{result}\n"));
     let first_rung = unit.rungs.first().map_or(unit.span.end, |rung| rung.span.start);
     let declared = comments.before(first_rung, 1);
-    let mut rungs = Rungs::new(program, unit, names, problems);
-    let body = rungs.all(|rung| before_rung(rung, comments));
-    let variables = std::mem::take(&mut rungs.variables);
+    let (body, variables) = statements(program, unit, names, comments, problems);
     declarations::variables(&mut text, program, unit, &variables, Words { names }, problems);
     text.push_str(&declared);
     text.push('\n');
@@ -82,10 +82,33 @@ fn unit(
     text
 }
 
+/// The body of a unit, and the variables that it needs beside the declared ones: name and type.
+fn statements(
+    program: &Program,
+    unit: &Unit,
+    names: &mut Names,
+    comments: &mut Comments<'_>,
+    problems: &mut Vec<Diagnostic>,
+) -> (String, Vec<(String, String)>) {
+    let mut rungs = Rungs::new(program, unit, names, problems);
+    let body = rungs.all(|rung| before_rung(rung, comments));
+    (body, std::mem::take(&mut rungs.variables))
+}
+
+/// The body of a unit for files of other formats; as [`statements`], without the comments of the file.
+pub(in crate::frontend) fn body(
+    program: &Program,
+    unit: &Unit,
+    names: &mut Names,
+    problems: &mut Vec<Diagnostic>,
+) -> (String, Vec<(String, String)>) {
+    statements(program, unit, names, &mut Comments { rest: &[] }, problems)
+}
+
 /// The comments before a rung, and its name and title as one more.
 fn before_rung(rung: &Rung, comments: &mut Comments<'_>) -> String {
     let mut text = comments.before(rung.span.start, 1);
-    let off = (!rung.enabled).then_some("off: not written");
+    let off = (!rung.enabled).then_some("off");
     let parts = [rung.name.as_ref().map(|name| name.text.as_str()), rung.title.as_deref(), off];
     let parts: Vec<&str> = parts.into_iter().flatten().collect();
     if !parts.is_empty() {

@@ -6,13 +6,16 @@ use super::uses;
 use super::words::pin;
 use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
-use crate::ladder::library::{StandardBlock, Takes};
-use crate::ladder::{BlockCall, Expression, ExpressionKind, Reference, Step, UnitKind, VariableClass, Wire, key};
+use crate::ladder::library::StandardBlock;
+use crate::ladder::{BlockCall, Expression, ExpressionKind, Reference, Root, Step, UnitKind, VariableClass, Wire, key};
 use crate::source::Span;
 
-/// Whether other compilers have a block: those of the register machine take constants and registers.
+/// The blocks of the register machine, which no other compiler has.
+const REGISTER_MACHINE: [&str; 9] = ["TT", "TS", "UC", "DC", "DR", "BS", "BC", "SHIFTL", "SHIFTR"];
+
+/// Whether other compilers have a block.
 pub(super) fn is_iec(block: StandardBlock) -> bool {
-    block.inputs().iter().all(|input| input.takes == Takes::Value)
+    !REGISTER_MACHINE.contains(&block.name())
 }
 
 /// The BOOL pins of a block through which power flows.
@@ -47,13 +50,27 @@ impl Rungs<'_> {
         let enabled = if needed && output.is_none() { self.held(enabled, &Change::All) } else { enabled };
         self.spill(&Change::All);
         let instance = self.words().reference(&call.instance);
+        let enabled_by_pin = matches!(enabled, Power::While(_)) && !pins.has_enable && self.keeps_inputs(call);
+        let condition = if enabled_by_pin {
+            arguments.insert(0, format!("EN := {}", self.words().expression(&enabled.expression())));
+            Power::Always
+        } else {
+            enabled.clone()
+        };
         let mut statements = vec![format!("{instance}({});", arguments.join(", "))];
         if let Some(argument) = pin(call, "ENO").filter(|_| !pins.has_enable)
             && let Wire::Output(target) = &argument.wire
         {
-            statements.push(format!("{} := TRUE;", self.words().reference(target)));
+            let target = self.words().reference(target);
+            match (&enabled, enabled_by_pin) {
+                (Power::While(enable), true) => {
+                    let enable = self.words().expression(enable);
+                    statements.push(format!("IF {enable} THEN {target} := TRUE; END_IF;"));
+                }
+                _ => statements.push(format!("{target} := TRUE;")),
+            }
         }
-        self.line_while(&enabled, &statements.join(" "));
+        self.line_while(&condition, &statements.join(" "));
         match output {
             None => enabled,
             Some(output) => {
@@ -62,6 +79,14 @@ impl Rungs<'_> {
                 Power::While(Expression { kind: ExpressionKind::Read(reference), span: Span::default() })
             }
         }
+    }
+
+    /// Whether it can be seen that the inputs of a call are set although it is not enabled: something reads one, or another call
+    /// leaves it as it is. Where nobody can see it, an IF around the call says the same to more compilers.
+    fn keeps_inputs(&self, call: &BlockCall) -> bool {
+        let Root::Name(instance) = &call.instance.root else { return true };
+        let Some(mentions) = self.mentions.get(&instance.key()) else { return false };
+        mentions.count > 1 || call.arguments.iter().any(|argument| mentions.members.contains(&argument.pin.key()))
     }
 
     /// The arguments of a block in words, in their order, with the power on the left and on EN when all are computed.

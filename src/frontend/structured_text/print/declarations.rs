@@ -2,23 +2,25 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::calls::is_iec;
 use super::names::Names;
 use super::uses::{self, Use};
 use super::words::Words;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ladder::library::StandardBlock;
 use crate::ladder::{Expression, Program, TypeKind, Unit, UnitKind, Variable, VariableClass, key};
 
 /// What runs, as it is written.
-pub(super) struct Instances {
+pub(in crate::frontend) struct Instances {
     /// The names of program types that are not those of their units, by key.
-    pub(super) types: HashMap<String, String>,
+    pub(in crate::frontend) types: HashMap<String, String>,
     /// Each instance: its name, its program's key, its task.
-    list: Vec<(String, String, Option<String>)>,
+    pub(in crate::frontend) list: Vec<(String, String, Option<String>)>,
 }
 
 /// The instances of the programs. A program that none names has one of its own name, and its type another name then: one name stands
 /// for one thing.
-pub(super) fn instances(program: &Program, names: &mut Names) -> Instances {
+pub(in crate::frontend) fn instances(program: &Program, names: &mut Names) -> Instances {
     let mut types = HashMap::new();
     let mut list = Vec::new();
     let named: HashSet<String> = program.instances.iter().map(|instance| instance.program.key()).collect();
@@ -91,18 +93,30 @@ pub(super) fn types(text: &mut String, program: &Program, words: Words<'_>) {
     text.push_str("END_TYPE\n\n");
 }
 
-/// All variables of a unit: the global ones that it uses, its own, the instances that their calls declare, and those that its
-/// statements need beside them.
-pub(super) fn variables(
-    text: &mut String,
-    program: &Program,
+/// What a unit uses beside what it declares.
+pub(in crate::frontend) struct Used<'p> {
+    /// Global variables.
+    pub(in crate::frontend) globals: Vec<&'p Variable>,
+    /// The instances that their calls declare: name and type, as they are written.
+    pub(in crate::frontend) instances: Vec<(String, String)>,
+}
+
+/// What a unit uses beside what it declares.
+pub(in crate::frontend) fn used<'p>(
+    program: &'p Program,
     unit: &Unit,
-    added: &[(String, String)],
     words: Words<'_>,
     problems: &mut Vec<Diagnostic>,
-) {
+) -> Used<'p> {
+    for variable in &unit.variables {
+        let block = variable.ty.as_ref().and_then(|ty| StandardBlock::from_name(&ty.name.text));
+        if block.is_some_and(|block| !is_iec(block)) {
+            let message = format!("`{}` is a block of the register machine", variable.name.text);
+            problems.push(Diagnostic::new(Code::CannotConvert, variable.span, message));
+        }
+    }
     let own: HashSet<String> = unit.variables.iter().map(|variable| variable.name.key()).collect();
-    let mut used: HashSet<String> = HashSet::new();
+    let (mut used, mut called) = (HashSet::new(), HashSet::new());
     let mut instances: Vec<(String, String)> = Vec::new();
     let registers = ["ireg", "oreg", "hreg"];
     let globals: HashMap<String, &Variable> =
@@ -113,7 +127,7 @@ pub(super) fn variables(
                 && let Some(name) = instance.as_name()
                 && !own.contains(&name.key())
                 && !globals.contains_key(&name.key())
-                && used.insert(name.key())
+                && called.insert(name.key())
             {
                 let ty = words.names.spell_type(&ty.text).into_owned();
                 instances.push((words.names.spell(&name.text).into_owned(), ty));
@@ -132,20 +146,30 @@ pub(super) fn variables(
             }
             used.insert(root);
         };
-        for rung in unit.rungs.iter().filter(|rung| rung.enabled) {
+        for rung in &unit.rungs {
             uses::circuit(&rung.circuit, &mut visit);
         }
         for initial in unit.variables.iter().filter_map(|variable| variable.initial.as_ref()) {
             uses::expression(initial, &mut visit);
         }
     }
-    let externals: Vec<&Variable> = program
-        .globals
-        .iter()
-        .filter(|global| used.contains(&global.name.key()) && !own.contains(&global.name.key()))
-        .collect();
+    let is_used = |global: &&Variable| used.contains(&global.name.key()) && !own.contains(&global.name.key());
+    Used { globals: program.globals.iter().filter(is_used).collect(), instances }
+}
+
+/// All variables of a unit: the global ones that it uses, its own, the instances that their calls declare, and those that its
+/// statements need beside them.
+pub(super) fn variables(
+    text: &mut String,
+    program: &Program,
+    unit: &Unit,
+    added: &[(String, String)],
+    words: Words<'_>,
+    problems: &mut Vec<Diagnostic>,
+) {
+    let Used { globals, instances } = used(program, unit, words, problems);
     for (constant, head) in [(false, "VAR_EXTERNAL"), (true, "VAR_EXTERNAL CONSTANT")] {
-        let listed = externals.iter().filter(|global| (global.class == VariableClass::Constant) == constant);
+        let listed = globals.iter().filter(|global| (global.class == VariableClass::Constant) == constant);
         let lines: Vec<String> = listed
             .map(|global| declaration(&Variable { initial: None, address: None, ..(*global).clone() }, words))
             .collect();

@@ -1,14 +1,14 @@
 //! Rungs as statements, in the order in which their elements run. Power is a pending expression for as long as nothing that it reads
 //! changes; what would change it first computes it into a temporary variable.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::names::Names;
 use super::power::{Change, HIGHEST, Power, depends, read};
 use super::uses;
 use super::words::Words;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::library::StandardBlock;
+use crate::ladder::Step;
 use crate::ladder::{
     Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, Name, Program, Reference, Root, Rung,
     Statement, Unit, UnitKind, Variable, VariableClass, key,
@@ -41,6 +41,8 @@ pub(super) struct Rungs<'a> {
     /// The keys of variables, with those that are global.
     declared: HashMap<String, &'a Variable>,
     rungs: HashMap<String, usize>,
+    /// How each variable is mentioned, by key.
+    pub(super) mentions: HashMap<String, Mentions>,
     /// The place of the rung that is written.
     place: usize,
     pub(super) problems: &'a mut Vec<Diagnostic>,
@@ -72,6 +74,7 @@ impl<'a> Rungs<'a> {
             guards: Vec::new(),
             declared,
             rungs,
+            mentions: mentions(unit),
             place: 0,
             problems,
         }
@@ -90,7 +93,7 @@ impl<'a> Rungs<'a> {
                 if !active.is_empty() {
                     let condition = off(&active);
                     self.open(&condition);
-                    // A branch of IF is never empty, even if all of its rungs are off.
+                    // A branch of IF is never empty, even if its rungs do nothing.
                     self.line(";");
                 }
                 open = active;
@@ -98,6 +101,15 @@ impl<'a> Rungs<'a> {
             self.text.push_str(&before(rung));
             if rung.enabled {
                 self.rung(place, rung);
+            } else {
+                // Not run, but there for whoever reads it.
+                self.open("FALSE");
+                let start = self.text.len();
+                self.rung(place, rung);
+                if self.text.len() == start {
+                    self.line(";");
+                }
+                self.close();
             }
         }
         if !open.is_empty() {
@@ -430,7 +442,6 @@ impl<'a> Rungs<'a> {
             let message = "the power behind these statements depends on whether an index is out of range";
             self.problem(span, message);
         }
-        self.unwritable_calls(list);
         let power = if needed { self.held(power, &Change::All) } else { power };
         self.spill(&Change::All);
         if let Power::Never = power {
@@ -500,40 +511,48 @@ impl<'a> Rungs<'a> {
         let mut ty = declared.ty.as_ref()?;
         for step in &call.instance.steps {
             match step {
-                crate::ladder::Step::Index(..) => {}
-                crate::ladder::Step::Member(member) => {
+                Step::Index(..) => {}
+                Step::Member(member) => {
                     let unit = self.program.units.iter().find(|unit| unit.name.key() == key(&ty.name.text))?;
                     ty = unit.variables.iter().find(|one| one.name.key() == member.key())?.ty.as_ref()?;
                 }
-                crate::ladder::Step::Bit(..) => return None,
+                Step::Bit(..) => return None,
             }
         }
         Some(ty.name.text.clone())
-    }
-
-    /// Reports blocks in statements that other compilers have not.
-    fn unwritable_calls(&mut self, list: &[Statement]) {
-        let mut names = Vec::new();
-        uses::statements(list, &mut |mentioned| {
-            if let uses::Use::Reference(reference) = mentioned
-                && let Some(name) = reference.as_name()
-            {
-                names.push(name);
-            }
-        });
-        for name in names {
-            let ty = self.declared.get(&name.key()).and_then(|one| one.ty.as_ref());
-            let block = ty.and_then(|ty| StandardBlock::from_name(&ty.name.text));
-            if block.is_some_and(|block| !super::calls::is_iec(block)) {
-                self.problem(name.span, &format!("`{}` is a block of the register machine", name.text));
-            }
-        }
     }
 }
 
 /// The condition that flags are off.
 fn off(flags: &[String]) -> String {
     flags.iter().map(|flag| format!("NOT {flag}")).collect::<Vec<_>>().join(" AND ")
+}
+
+/// How the rungs of a unit mention a variable.
+#[derive(Default)]
+pub(super) struct Mentions {
+    /// How often all of it, or an element of it.
+    pub(super) count: usize,
+    /// The keys of members.
+    pub(super) members: HashSet<String>,
+}
+
+fn mentions(unit: &Unit) -> HashMap<String, Mentions> {
+    let mut all: HashMap<String, Mentions> = HashMap::new();
+    for rung in &unit.rungs {
+        uses::circuit(&rung.circuit, &mut |mentioned| {
+            let uses::Use::Reference(reference) = mentioned else { return };
+            let Some(root) = uses::root_key(mentioned) else { return };
+            let mentions = all.entry(root).or_default();
+            let members = reference.steps.iter().filter_map(|step| match step {
+                Step::Member(member) => Some(member.key()),
+                _ => None,
+            });
+            mentions.members.extend(members);
+            mentions.count += usize::from(!reference.steps.iter().any(|step| matches!(step, Step::Member(_))));
+        });
+    }
+    all
 }
 
 /// Whether a circuit is of contacts and conditions alone, without nodes.
