@@ -17,7 +17,7 @@ mod variables;
 use super::graph::report::Report;
 use super::graph::types::Signatures;
 use super::{Parsed, graph, instances, structured_text};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{Name, Origin, Program, Unit, UnitKind};
 use crate::source::{Source, Span};
 
@@ -52,6 +52,7 @@ pub fn parse(source: &Source) -> Parsed {
             report.error(Code::UnknownFormat, root.span(), message);
         }
     }
+    // What runs is settled when the units of all files are known.
     let task_instances = std::mem::take(&mut around.instances);
     let named = around.name.clone();
     let Parsed { mut program, diagnostics } =
@@ -109,10 +110,10 @@ pub fn parse(source: &Source) -> Parsed {
         unit.variables.extend(hidden);
     }
     name(&mut program, named);
-    if program.units.is_empty() && diagnostics.is_empty() {
+    if program.units.is_empty() && diagnostics.is_empty() && report.is_empty() {
         let problem = "there is no program here";
         report.push(
-            crate::diagnostic::Diagnostic::new(Code::BadElement, Span::default(), problem)
+            Diagnostic::new(Code::BadElement, Span::default(), problem)
                 .hint("projects keep programs in files of their own: give the folder that holds project.json"),
         );
     }

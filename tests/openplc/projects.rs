@@ -114,3 +114,27 @@ fn a_project_without_its_files_is_said_to_be_none() {
     assert_eq!(codes(&parsed.diagnostics), ["R0222", "R0301"]);
     assert!(parsed.diagnostics[0].hint.as_ref().is_some_and(|hint| hint.contains("folder")));
 }
+
+#[test]
+fn the_command_takes_a_folder_and_refuses_one_without_a_project() {
+    let folder = std::env::temp_dir().join(format!("rung-openplc-{}", std::process::id()));
+    let programs = folder.join("pous/programs");
+    std::fs::create_dir_all(&programs).expect("a folder for the test");
+    let check = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_rung"));
+        let output = command.arg("check").arg(&folder).output().expect("the command runs");
+        let text = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+        (output.status.code(), text)
+    };
+    let (code, text) = check();
+    assert!(code == Some(1) && text.contains("without a project.json"), "{text}");
+    let project = json!({"meta": {"name": "plant"}, "data": {"configuration": configuration()}}).to_string();
+    std::fs::write(folder.join("project.json"), project).expect("it can be written");
+    std::fs::write(programs.join("main.ld"), file("b : bool;", &[drawn()])).expect("it can be written");
+    let (code, text) = check();
+    assert!(code == Some(0) && text.contains("1 rungs, 0 errors"), "{text}");
+    std::fs::write(programs.join("main.ld"), file("a : bool;", &[drawn()])).expect("it can be written");
+    let (code, text) = check();
+    assert!(code == Some(1) && text.contains("main.ld:"), "{text}");
+    std::fs::remove_dir_all(&folder).expect("it can be removed");
+}

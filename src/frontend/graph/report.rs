@@ -57,6 +57,11 @@ impl Report {
         result.map_err(|fault| self.fault(fault, span)).ok()
     }
 
+    /// Whether nothing was said so far.
+    pub(in crate::frontend) fn is_empty(&self) -> bool {
+        self.diagnostics.is_empty() && self.missing.is_empty()
+    }
+
     /// All diagnostics.
     pub(in crate::frontend) fn finish(mut self) -> Vec<Diagnostic> {
         for (kind, span, count) in self.missing {

