@@ -3,9 +3,12 @@
 //! One module a format. A front end is pure, and must never panic: whatever the bytes, the answer is a program,
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
+mod graph;
+mod instances;
 mod leave_out;
 mod missing;
 pub mod native;
+pub mod openplc;
 pub mod plcopen;
 pub mod structured_text;
 mod text;
@@ -38,6 +41,7 @@ pub struct Frontend {
 /// The formats, the most particular first. The native text comes last and takes whatever the others leave.
 pub const FRONTENDS: &[Frontend] = &[
     Frontend { name: "PLCopen XML", recognises: plcopen::recognises, parse: plcopen::parse },
+    Frontend { name: "OpenPLC Editor 4", recognises: openplc::recognises, parse: openplc::parse },
     Frontend { name: "Structured Text", recognises: structured_text::recognises, parse: structured_text::parse },
     Frontend { name: "Rung text", recognises: |_| true, parse: native::parse },
 ];

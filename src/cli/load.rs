@@ -1,4 +1,6 @@
-//! Reading a program's file, in whatever format it is.
+//! Reading a program's file, in whatever format it is, or the folder of a project.
+
+mod project;
 
 use std::io::Read;
 use std::path::Path;
@@ -47,6 +49,11 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 /// # Errors
 /// When the file cannot be read. What is wrong inside it is in [`Loaded::diagnostics`].
 pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    if path.is_dir() {
+        let source = project::read(path)?;
+        let Parsed { program, diagnostics } = frontend::parse(&source);
+        return Ok(Loaded { source, program, diagnostics });
+    }
     let bytes = read_bytes(path)?;
     let (source, undecoded) = match Source::decode(path.display().to_string(), &bytes) {
         Ok(source) => (source, None),

@@ -12,8 +12,8 @@ mod rungs;
 mod xml;
 
 use self::xml::Xml;
-use super::types::Signatures;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::graph::types::Signatures;
 use crate::frontend::structured_text::print::{Instances, Names, Words, body, instances, of_units, used};
 use crate::ladder::{Program, Unit, UnitKind, key};
 

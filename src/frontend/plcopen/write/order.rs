@@ -3,11 +3,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::order;
-use super::super::report::Report;
 use super::super::xml::Document;
 use super::drawing::Drawing;
 use super::xml::Xml;
+use crate::frontend::graph::order;
+use crate::frontend::graph::report::Report;
 use crate::source::Source;
 
 /// The longest stretch of a rung whose elements may run in another order.

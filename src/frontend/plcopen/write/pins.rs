@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::super::types::Signatures;
+use crate::frontend::graph::types::Signatures;
 use crate::frontend::structured_text::print::is_iec;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::library::StandardBlock;

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::super::types::Signatures;
 use super::drawing::{Drawing, Input, Point, Shape, Source, width_of};
 use super::order::{Step, Touched, is_kept};
 use super::pins::{self, Callee, Scope};
+use crate::frontend::graph::types::Signatures;
 use crate::frontend::structured_text::print::{Words, uses};
 use crate::ladder::{
     Argument, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Program,
