@@ -300,6 +300,8 @@ impl<'p> Artist<'p> {
         if !callee.is_function {
             self.touch(&call.instance, true, &mut touched);
         }
+        // What takes the output of an instance keeps its value while EN is FALSE only if it is read at once.
+        let at_once = !callee.is_function && left == "EN";
         let mut given: Vec<(String, Given)> = vec![(left, Given::Power(power))];
         let mut outputs: Vec<(String, String, Touched)> = Vec::new();
         let mut place = place;
@@ -333,7 +335,8 @@ impl<'p> Artist<'p> {
                     if callee.is_function && pin.eq_ignore_ascii_case(&callee.name) {
                         pin = "OUT".to_owned();
                     }
-                    outputs.push((pin, self.words.reference(target), self.written(target)));
+                    let touched = Touched { leaves: at_once, ..self.written(target) };
+                    outputs.push((pin, self.words.reference(target), touched));
                 }
             }
         }
