@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use load::{load, load_checked, read_source};
+pub(crate) use load::{Missing, load, load_checked, read_source};
 pub(crate) use output::{Failure, WholeFile, cannot_write, print, report, write_whole};
 
 /// A compiler and runtime for PLC ladder diagrams.

@@ -77,6 +77,7 @@ codes! {
     CannotConvert = 210 Error "something that the other format has not",
     BadXml = 221 Error "XML that cannot be read",
     BadElement = 222 Error "an element that lacks what it needs",
+    BadJson = 223 Error "JSON that cannot be read",
     // Names.
     UndeclaredName = 301 Error "a name that is not declared",
     DuplicateName = 302 Error "a name that is declared twice",
@@ -110,6 +111,8 @@ codes! {
     NoMemoryHere = 512 Error "something that remembers, in a function",
     BadResource = 513 Error "a task, program instance or resource that cannot be",
     MisplacedDeclaration = 514 Error "a declaration that cannot stand here",
+    SeparateAddresses = 515 Warning "addresses that overlap only in number",
+    LeftOut = 516 Warning "something that Rung has not is left out",
     DanglingConnection = 521 Error "a wire from an element that there is not",
     DuplicateId = 522 Error "two elements of one id",
     PowerCycle = 523 Error "power that runs in a circle",
@@ -205,7 +208,8 @@ pub fn render(source: &Source, diagnostics: &[Diagnostic]) -> String {
             .map(|span| within(source, *span))
             .collect();
         let excerpt = Excerpt::new(source, &places);
-        let report = report(diagnostic, places.iter().map(|place| excerpt.place(place)));
+        let file = |place: &Range<usize>| source.file_at(Span::new(place.start, place.end).start);
+        let report = report(diagnostic, places.iter().map(|place| (file(place), excerpt.place(place))));
         if term::emit_to_string(&mut text, &config, &excerpt, &report).is_err() {
             // A place outside the source: the finding still counts, so it is printed without its line.
             text.push_str(&format!("{}: {}\n", diagnostic.code, tidy(&diagnostic.message)));
@@ -223,16 +227,16 @@ fn within(source: &Source, span: Span) -> Range<usize> {
     span.range().start.min(end)..end
 }
 
-/// The report of a diagnostic; `places` are those of its span and of its related spans, in that order.
-fn report(diagnostic: &Diagnostic, mut places: impl Iterator<Item = Range<usize>>) -> Report<()> {
+/// The report of a diagnostic; `places`, each in a file, are those of its span and of its related spans, in that order.
+fn report(diagnostic: &Diagnostic, mut places: impl Iterator<Item = (usize, Range<usize>)>) -> Report<usize> {
     let severity = match diagnostic.code.severity() {
         Severity::Warning => ReportSeverity::Warning,
         Severity::Error => ReportSeverity::Error,
     };
-    let primary = places.next().map(|place| Label::new(LabelStyle::Primary, (), place));
+    let primary = places.next().map(|(file, place)| Label::new(LabelStyle::Primary, file, place));
     let related = places
         .zip(&diagnostic.related)
-        .map(|(place, (_, note))| Label::new(LabelStyle::Secondary, (), place).with_message(tidy(note)));
+        .map(|((file, place), (_, note))| Label::new(LabelStyle::Secondary, file, place).with_message(tidy(note)));
     Report::new(severity)
         .with_code(diagnostic.code.to_string())
         .with_message(tidy(&diagnostic.message))

@@ -3,11 +3,17 @@
 //! One module a format. A front end is pure, and must never panic: whatever the bytes, the answer is a program,
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
+mod graph;
+mod instances;
+mod leave_out;
 mod missing;
 pub mod native;
+pub mod openplc;
 pub mod plcopen;
 pub mod structured_text;
 mod text;
+
+pub use leave_out::leave_out;
 
 use crate::diagnostic::Diagnostic;
 use crate::ladder::Program;
@@ -35,6 +41,7 @@ pub struct Frontend {
 /// The formats, the most particular first. The native text comes last and takes whatever the others leave.
 pub const FRONTENDS: &[Frontend] = &[
     Frontend { name: "PLCopen XML", recognises: plcopen::recognises, parse: plcopen::parse },
+    Frontend { name: "OpenPLC Editor 4", recognises: openplc::recognises, parse: openplc::parse },
     Frontend { name: "Structured Text", recognises: structured_text::recognises, parse: structured_text::parse },
     Frontend { name: "Rung text", recognises: |_| true, parse: native::parse },
 ];
@@ -43,4 +50,9 @@ pub const FRONTENDS: &[Frontend] = &[
 pub fn parse(source: &Source) -> Parsed {
     let found = FRONTENDS.iter().find(|frontend| (frontend.recognises)(source.text()));
     (found.map_or(native::parse as fn(&Source) -> Parsed, |frontend| frontend.parse))(source)
+}
+
+/// Whether a text looks like native text: like none of the other formats.
+pub fn is_native(text: &str) -> bool {
+    FRONTENDS.split_last().is_none_or(|(_, others)| !others.iter().any(|frontend| (frontend.recognises)(text)))
 }

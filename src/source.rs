@@ -48,12 +48,14 @@ impl fmt::Debug for Span {
     }
 }
 
-/// One source file: its name as the user gave it and its text, valid UTF-8 without a byte order mark.
+/// One source file, or the files of a folder: its name as the user gave it and its text, valid UTF-8 without a byte order mark.
 #[derive(Clone, Debug)]
 pub struct Source {
     name: String,
     text: String,
     line_starts: Vec<u32>,
+    /// The files that it is made of, where it is more than one: where each starts, and its name.
+    files: Vec<(u32, String)>,
 }
 
 impl Source {
@@ -68,7 +70,40 @@ impl Source {
                     .map(|(at, _)| Span::new(at + 1, at + 1).start),
             )
             .collect();
-        Self { name: name.into(), text, line_starts }
+        Self { name: name.into(), text, line_starts, files: Vec::new() }
+    }
+
+    /// The files of a folder as one source, one behind the other, each starting on a line of its own. Their names are kept, so
+    /// that diagnostics name the file and count its lines. Together they may have [`MAXIMUM_BYTES`].
+    pub fn joined(name: impl Into<String>, files: impl IntoIterator<Item = (String, String)>) -> Self {
+        let mut text = String::new();
+        let mut starts = Vec::new();
+        for (file, content) in files {
+            if !text.is_empty() && !text.ends_with('\n') {
+                text.push('\n');
+            }
+            starts.push((Span::new(text.len(), text.len()).start, file));
+            text.push_str(&content);
+        }
+        Self { files: starts, ..Self::new(name, text) }
+    }
+
+    /// The files that it is made of, each with its name and its bytes; most sources are one file.
+    pub fn files(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
+        let one = self.files.is_empty().then_some((self.name(), 0..self.text.len()));
+        let ends = self.files.iter().skip(1).map(|(start, _)| *start as usize).chain([self.text.len()]);
+        let many = self.files.iter().zip(ends).map(|((start, name), end)| (name.as_str(), *start as usize..end));
+        one.into_iter().chain(many)
+    }
+
+    /// Which of its files a byte stands in, by its place among them.
+    pub fn file_at(&self, byte: u32) -> usize {
+        self.files.partition_point(|(start, _)| *start <= byte).saturating_sub(1)
+    }
+
+    /// The name of one of its files, and the place of its first line among all lines, from 0.
+    pub fn file(&self, file: usize) -> (&str, usize) {
+        self.files.get(file).map_or((self.name(), 0), |(start, name)| (name.as_str(), self.line(*start) - 1))
     }
 
     /// A source from a file's bytes: UTF-8, UTF-16 with a byte order mark, or Latin-1 where an XML header says so.

@@ -9,7 +9,7 @@ use super::Checker;
 use super::model::VariableId;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
-use crate::ladder::{Address, Area, VariableClass, Width};
+use crate::ladder::{Address, Area, Origin, VariableClass, Width};
 
 /// The storage of an address: equal for two addresses exactly when they share it.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -94,6 +94,13 @@ impl Checker<'_> {
         // The later one in the source is the intruder.
         let (first, second) = if a.span <= b.span { (a, b) } else { (b, a) };
         let message = format!("`{}` overlaps `{}`", second, first);
+        if self.program.origin == Origin::Imported {
+            let message = format!("`{second}` and `{first}` have storage of their own");
+            let problem = Diagnostic::new(Code::SeparateAddresses, second.span, message)
+                .related(first.span, "the other address")
+                .hint("where one should be part of the other, read its bits instead");
+            return self.report.push(problem);
+        }
         let problem = Diagnostic::new(Code::AddressConflict, second.span, message)
             .related(first.span, "the other address")
             .hint(format!("two addresses may share storage only when their widths are equal; `{}` holds `{}`", a, b));

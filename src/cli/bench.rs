@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use rung_runtime::Scan;
 use target_lexicon::Triple;
 
-use super::{Failure, load_checked, print};
+use super::{Failure, Missing, load_checked, print};
 use crate::diagnostic::Code;
 use crate::engine::disassemble::lines;
 use crate::engine::interp::{Interpreter, Textbook};
@@ -28,6 +28,8 @@ pub(super) struct Arguments {
     /// The programs
     #[arg(required = true)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    missing: Missing,
     /// Only this engine
     #[arg(long)]
     engine: Option<Engine>,
@@ -67,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         "program", "rungs", "engine", "ns/scan", "ns/rung", "ratio", "", "compile ms", "bytes/rung", "instr/rung"
     );
     for path in &arguments.files {
-        let (loaded, checked) = load_checked(path)?;
+        let (loaded, checked) = load_checked(path, arguments.missing)?;
         let program = lower::lower(&checked, &loaded.source, None)
             .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
         let mut program = opt::optimise(program);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::{Failure, load_checked, read_source, write_whole};
+use super::{Failure, Missing, load_checked, read_source, write_whole};
 use crate::diagnostic::Code;
 use crate::engine::jit::{Jit, host_isa};
 use crate::engine::{clif, disassemble};
@@ -21,6 +21,8 @@ const LOWER: &str = "lower";
 pub(super) struct Arguments {
     /// The program; `-` is the standard input
     file: PathBuf,
+    #[command(flatten)]
+    missing: Missing,
     /// What to write [default: logic, unless only a map is asked for]
     #[arg(long, value_enum)]
     emit: Option<Emit>,
@@ -50,7 +52,7 @@ enum Emit {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let passes = passes_until(arguments.after.as_deref())?;
-    let (loaded, checked) = load_checked(&arguments.file)?;
+    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
     let earlier = arguments.previous_map.as_deref().map(read_map).transpose()?;
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;

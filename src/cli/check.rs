@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::{Failure, load, print, report};
-use crate::check::check;
 use crate::diagnostic::{self, Severity, any_error};
 
 /// Checks programs and prints every diagnostic; the exit code is 1 when one of them is an error
@@ -26,10 +25,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Err(other) => return Err(other),
         };
-        // What a broken text would mean is guesswork, so that only a sound one is checked further.
-        if !any_error(&loaded.diagnostics) {
-            loaded.diagnostics.extend(check(&loaded.program).1);
-        }
+        loaded.check();
         report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
         failed |= any_error(&loaded.diagnostics);
         let count = |severity: Severity| {

@@ -7,7 +7,8 @@ use clap::ValueEnum;
 use super::{Failure, load, report, write_whole};
 use crate::check::check;
 use crate::diagnostic::{self, any_error};
-use crate::frontend::{native, structured_text};
+use crate::frontend::{native, plcopen, structured_text};
+use crate::ladder::Origin;
 
 /// Writes a program in another format; what it computes stays the same
 #[derive(Debug, clap::Args)]
@@ -26,23 +27,31 @@ pub(super) struct Arguments {
 enum Format {
     /// Rung's own text
     Native,
+    /// PLCopen TC6 XML, as OpenPLC Editor and Beremiz open it
+    Plcopen,
     /// Structured Text for other IEC compilers
     St,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let loaded = load(&arguments.file)?;
-    let mut diagnostics = loaded.diagnostics;
-    if !any_error(&diagnostics) {
-        diagnostics.extend(check(&loaded.program).1);
+    let mut loaded = load(&arguments.file)?;
+    loaded.check();
+    if any_error(&loaded.diagnostics) {
+        return Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics));
     }
-    if any_error(&diagnostics) {
-        return Err(Failure::diagnostics(&loaded.source, &diagnostics));
-    }
-    report(&diagnostic::render(&loaded.source, &diagnostics));
+    report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
+    let mut program = loaded.program;
     let text = match arguments.to {
-        Format::Native => Ok(native::print(&loaded.program)),
-        Format::St => structured_text::print(&loaded.program),
+        Format::Native => {
+            // Only what is doubtful in native text has to say that it is not of it.
+            let origin = std::mem::replace(&mut program.origin, Origin::Native);
+            if check(&program).0.is_none() {
+                program.origin = origin;
+            }
+            Ok(native::print(&program))
+        }
+        Format::Plcopen => plcopen::print(&program),
+        Format::St => structured_text::print(&program),
     };
     let text = text.map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;
     write_whole(&arguments.output, text.as_bytes())

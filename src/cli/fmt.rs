@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use super::{Failure, load, print, report, write_whole};
 use crate::diagnostic::{self, Code, Diagnostic, any_error};
-use crate::frontend::native;
-use crate::ladder::Origin;
+use crate::frontend::{self, native};
 use crate::source::Span;
 
 /// Writes programs in the canonical form of the native text
@@ -31,7 +30,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Err(other) => return Err(other),
         };
-        if loaded.program.origin == Origin::Imported {
+        if !frontend::is_native(loaded.source.text()) {
             let problem = Diagnostic::new(Code::OtherFormat, Span::default(), "this file is not in native text")
                 .hint("`rung convert` writes it as native text, to a file of its own");
             report(&diagnostic::render(&loaded.source, &[problem]));

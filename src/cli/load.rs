@@ -1,4 +1,6 @@
-//! Reading a program's file, in whatever format it is.
+//! Reading a program's file, in whatever format it is, or the folder of a project.
+
+mod project;
 
 use std::io::Read;
 use std::path::Path;
@@ -6,7 +8,7 @@ use std::path::Path;
 use super::{Failure, report};
 use crate::check::{Checked, check};
 use crate::diagnostic::{self, Code, Diagnostic, any_error};
-use crate::frontend::{self, Parsed};
+use crate::frontend::{self, Parsed, leave_out};
 use crate::ladder::Program;
 use crate::source::{MAXIMUM_BYTES, Source};
 
@@ -47,6 +49,11 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 /// # Errors
 /// When the file cannot be read. What is wrong inside it is in [`Loaded::diagnostics`].
 pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    if path.is_dir() {
+        let source = project::read(path)?;
+        let Parsed { program, diagnostics } = frontend::parse(&source);
+        return Ok(Loaded { source, program, diagnostics });
+    }
     let bytes = read_bytes(path)?;
     let (source, undecoded) = match Source::decode(path.display().to_string(), &bytes) {
         Ok(source) => (source, None),
@@ -61,22 +68,45 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { source, program, diagnostics })
 }
 
+impl Loaded {
+    /// Checks what there is of the program, with everything that there is to say about it. What Rung has not is left out, and
+    /// the rest checked; where the front end found other errors, what the rest would mean is guesswork.
+    pub(crate) fn check(&mut self) -> Option<Checked> {
+        if self.diagnostics.iter().any(|found| found.is_error() && found.code != Code::NotSupported) {
+            return None;
+        }
+        self.diagnostics.extend(leave_out(&mut self.program));
+        let (checked, found) = check(&self.program);
+        self.diagnostics.extend(found);
+        checked
+    }
+}
+
+/// Whether a program runs without what Rung has not.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct Missing {
+    /// Run a program of another tool without the elements that Rung has not; no power passes where they were
+    #[arg(long)]
+    allow_missing: bool,
+}
+
 /// Reads, parses and checks a program that is to run; warnings are printed.
 ///
 /// # Errors
 /// When it cannot be read or has an error.
-pub(crate) fn load_checked(path: &Path) -> Result<(Loaded, Checked), Failure> {
+pub(crate) fn load_checked(path: &Path, missing: Missing) -> Result<(Loaded, Checked), Failure> {
     let mut loaded = load(path)?;
-    if any_error(&loaded.diagnostics) {
-        return Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics));
+    let checked = loaded.check();
+    if missing.allow_missing {
+        for found in loaded.diagnostics.iter_mut().filter(|found| found.code == Code::NotSupported) {
+            found.code = Code::LeftOut;
+        }
     }
-    let (checked, found) = check(&loaded.program);
-    loaded.diagnostics.extend(found);
     match checked {
-        Some(checked) => {
+        Some(checked) if !any_error(&loaded.diagnostics) => {
             report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
             Ok((loaded, checked))
         }
-        None => Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics)),
+        _ => Err(Failure::diagnostics(&loaded.source, &loaded.diagnostics)),
     }
 }

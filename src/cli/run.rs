@@ -20,7 +20,7 @@ use rung_runtime::host::{End, Histogram, Statistics};
 use rung_runtime::{Fault, Stopped};
 
 use super::load::Loaded;
-use super::{Failure, duration, load_checked, print, report, tasks};
+use super::{Failure, Missing, duration, load_checked, print, report, tasks};
 use crate::check::Checked;
 use crate::diagnostic::Code;
 use crate::elementary::Value;
@@ -46,6 +46,8 @@ const LONGEST_CYCLE: i64 = 3_600_000_000_000;
 pub(super) struct Arguments {
     /// The program; `-` is the standard input
     file: PathBuf,
+    #[command(flatten)]
+    missing: Missing,
     /// Time from one scan to the next, a multiple of the tick [default: what the tasks' intervals have in common, or 10ms]
     #[arg(long, value_parser = duration::parse, value_name = "TIME")]
     cycle: Option<i64>,
@@ -73,7 +75,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (loaded, checked) = load_checked(&arguments.file)?;
+    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
     let began = Instant::now();
     let lowered = lower(&checked, &loaded.source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image would be larger than 1 GiB"))?;

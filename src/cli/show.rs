@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::{Failure, load, print, report, write_whole};
-use crate::check::check;
 use crate::diagnostic::{self, any_error};
 use crate::draw;
 
@@ -21,21 +20,20 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let loaded = load(&arguments.file)?;
-    let mut diagnostics = loaded.diagnostics;
-    if !any_error(&diagnostics) {
-        diagnostics.extend(check(&loaded.program).1);
-    }
-    report(&diagnostic::render(&loaded.source, &diagnostics));
+    let mut loaded = load(&arguments.file)?;
+    // What Rung has not is drawn too.
+    let program = loaded.program.clone();
+    loaded.check();
+    report(&diagnostic::render(&loaded.source, &loaded.diagnostics));
     // What could be read is drawn in any case: a drawing helps to find the error.
     match &arguments.svg {
-        Some(path) => write_whole(path, draw::svg(&loaded.program).as_bytes())?,
+        Some(path) => write_whole(path, draw::svg(&program).as_bytes())?,
         None => {
             let width = arguments.width.map_or_else(terminal_width, usize::from);
-            print(&draw::text(&loaded.program, &draw::TextOptions { width }))?;
+            print(&draw::text(&program, &draw::TextOptions { width }))?;
         }
     }
-    if any_error(&diagnostics) { Err(Failure::Said) } else { Ok(()) }
+    if any_error(&loaded.diagnostics) { Err(Failure::Said) } else { Ok(()) }
 }
 
 fn terminal_width() -> usize {

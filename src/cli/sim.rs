@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use rung_runtime::Scan;
 
 use super::run::difference;
-use super::{Failure, WholeFile, cannot_write, duration, load_checked, read_source, report, tasks};
+use super::{Failure, Missing, WholeFile, cannot_write, duration, load_checked, read_source, report, tasks};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
 use crate::engine::interp::Interpreter;
@@ -29,6 +29,8 @@ use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
 pub(super) struct Arguments {
     /// The program; `-` is the standard input
     file: PathBuf,
+    #[command(flatten)]
+    missing: Missing,
     /// A CSV table of what is set when: `time_ms,name,name,…`
     #[arg(long, value_name = "FILE.csv")]
     stimuli: Option<PathBuf>,
@@ -67,7 +69,7 @@ enum Engine {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (loaded, checked) = load_checked(&arguments.file)?;
+    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
     let program = lower(&checked, &loaded.source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
     let program = optimise(program);

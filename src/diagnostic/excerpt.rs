@@ -158,34 +158,35 @@ impl<'a> Excerpt<'a> {
 }
 
 impl<'a> Files<'a> for Excerpt<'_> {
-    type FileId = ();
+    /// The place of the file among those of the source.
+    type FileId = usize;
     type Name = &'a str;
     type Source = &'a str;
 
-    fn name(&'a self, _id: ()) -> Result<&'a str, FilesError> {
-        Ok(self.source.name())
+    fn name(&'a self, id: usize) -> Result<&'a str, FilesError> {
+        Ok(self.source.file(id).0)
     }
 
-    fn source(&'a self, _id: ()) -> Result<&'a str, FilesError> {
+    fn source(&'a self, _id: usize) -> Result<&'a str, FilesError> {
         Ok(&self.text)
     }
 
-    fn line_index(&'a self, _id: (), byte: usize) -> Result<usize, FilesError> {
+    fn line_index(&'a self, _id: usize, byte: usize) -> Result<usize, FilesError> {
         // Of the lines that start at one place all but the last are empty ones of a break.
         Ok(self.lines.partition_point(|line| line.range.start <= byte).saturating_sub(1))
     }
 
-    fn line_number(&'a self, _id: (), line: usize) -> Result<usize, FilesError> {
-        Ok(self.line(line)?.index + 1)
+    fn line_number(&'a self, id: usize, line: usize) -> Result<usize, FilesError> {
+        Ok((self.line(line)?.index + 1).saturating_sub(self.source.file(id).1))
     }
 
-    fn column_number(&'a self, _id: (), line: usize, byte: usize) -> Result<usize, FilesError> {
+    fn column_number(&'a self, _id: usize, line: usize, byte: usize) -> Result<usize, FilesError> {
         let start = self.source.line_range(self.line(line)?.index).map_or(0, |whole| whole.start);
         let before = self.source.text().get(start..self.source_byte(byte)).unwrap_or("");
         Ok(before.chars().count() + 1)
     }
 
-    fn line_range(&'a self, _id: (), line: usize) -> Result<Range<usize>, FilesError> {
+    fn line_range(&'a self, _id: usize, line: usize) -> Result<Range<usize>, FilesError> {
         Ok(self.line(line)?.range.clone())
     }
 }

@@ -1,8 +1,7 @@
 //! PLCopen TC6 XML, as OpenPLC Editor, Beremiz, CODESYS and others write it. `docs/plcopen.md` is its reference.
 //!
 //! [`parse`] reads declarations, tasks and the bodies in LD and FBD, whatever the namespace or prefix. A body is a
-//! graph of elements that name those they are wired to: `diagram` reads it, `order` says what runs when, `vertices` says
-//! what each element is in a rung, and `network` makes rungs of it. Syntax only: nothing here judges a type, and types are
+//! graph of elements that name those they are wired to: `diagram` reads it, and [`graph`] makes rungs of it. Syntax only: nothing here judges a type, and types are
 //! looked at only where a wire needs a variable of its own.
 //!
 //! Whatever the bytes, the answer is a program and diagnostics, in bounded memory and time.
@@ -10,23 +9,20 @@
 mod configuration;
 mod declarations;
 mod diagram;
-mod expression;
-mod network;
-mod order;
-mod report;
-mod rungs;
 mod textual;
-mod types;
-mod vertices;
+mod write;
 mod xml;
+
+pub use self::write::print;
 
 use std::collections::HashSet;
 
-use self::report::Report;
-use self::types::Signatures;
 use self::xml::{Document, Node};
 use super::Parsed;
+use super::graph::report::Report;
+use super::graph::types::Signatures;
 use super::structured_text::{self, Scope};
+use super::{graph, instances};
 use crate::diagnostic::Code;
 use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
 use crate::source::{Source, Span};
@@ -83,7 +79,7 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     let (types, comments) = declarations.finish();
     program.types = types;
     program.comments = comments;
-    let idle = configuration::read(root, program, &mut pous, report);
+    configuration::read(root, program, report);
     check_externals(&pous, &program.globals, report);
 
     let signatures = Signatures::new(program, pous.iter().map(|pou| &pou.unit));
@@ -105,7 +101,7 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     if program.units.is_empty() {
         report.error(Code::BadElement, root.span(), "this project has no program");
     }
-    configuration::switch_off(program, &idle, report);
+    instances::settle(program, report);
     program.comments.sort_by_key(|comment| comment.span);
 }
 
@@ -132,7 +128,10 @@ fn body(
                 let (more, hidden) = if content.child("rung").is_some() {
                     (textual::read(content, signatures, report), Vec::new())
                 } else {
-                    rungs::read(content, pou, signatures, comments, report)
+                    {
+                        let diagram = diagram::read(content, report);
+                        graph::rungs(&diagram, &pou.unit, content.span(), signatures, comments, report)
+                    }
                 };
                 rungs.0.extend(more);
                 rungs.1.extend(hidden);

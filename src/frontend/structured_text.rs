@@ -11,7 +11,7 @@ mod declarations;
 mod enable;
 mod parser;
 mod place;
-mod print;
+pub(in crate::frontend) mod print;
 mod recognise;
 
 pub use body::{Body, Scope, body};
@@ -20,10 +20,18 @@ pub use recognise::recognises;
 
 use super::Parsed;
 use super::text::MOST_TOKENS;
+use crate::ladder::Program;
 use crate::source::Source;
 
 /// Reads a file of structured text. After a syntax error it goes on at the next statement, declaration or unit, and the program
 /// holds the others.
 pub fn parse(source: &Source) -> Parsed {
     parser::Parser::new(source, MOST_TOKENS).program()
+}
+
+/// As [`parse`], for a format that has its types, globals, tasks and program instances elsewhere: `around` holds them.
+pub(super) fn parse_within(source: &Source, around: Program) -> Parsed {
+    let mut parser = parser::Parser::new(source, MOST_TOKENS);
+    parser.program = Program { name: parser.program.name, ..around };
+    parser.program()
 }

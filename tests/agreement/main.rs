@@ -2,12 +2,14 @@
 
 mod arrays;
 mod boxes;
+mod corpus;
 mod elements;
 mod examples;
 mod faults;
 mod guards;
 mod jumps;
 mod passes;
+mod one_program;
 mod random;
 mod register_machine;
 mod statements;
@@ -25,6 +27,7 @@ mod support {
     pub(crate) mod random_program;
     pub(crate) mod random_stimuli;
     pub(crate) mod rig;
+    pub(crate) mod same_trace;
     pub(crate) mod script;
     pub(crate) mod shrink;
     pub(crate) mod step_table;

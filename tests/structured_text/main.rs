@@ -1,7 +1,10 @@
 //! Structured text from outside: what each construct becomes, what each mistake is called, that what is written means the same when
 //! it is read again, and that no bytes do harm.
 
+mod constructs;
+mod hostile;
 mod random;
+mod units;
 
 #[path = "../support"]
 #[allow(dead_code, reason = "other test programs use the rest")]

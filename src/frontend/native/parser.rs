@@ -1,4 +1,4 @@
-//! The order of a file: types, registers, globals, tasks, units. The rules of its parts are in `declarations`, `units`, `rungs`
+//! The order of a file: origin, types, registers, globals, tasks, units. The rules of its parts are in `declarations`, `units`, `rungs`
 //! and `elements`, those of expressions and statements in [`text`](super::super::text).
 
 use std::ops::{Deref, DerefMut};
@@ -21,6 +21,7 @@ pub(super) struct Parser<'a> {
 /// The parts of a file, in their order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Place {
+    Origin,
     Types,
     Registers,
     Globals,
@@ -48,7 +49,7 @@ impl<'a> Parser<'a> {
     pub(super) fn new(source: &'a Source, most_tokens: usize) -> Self {
         let reader = Reader::new(source, Dialect::Native, most_tokens);
         let program = Program::empty(Origin::Native, reader.stem());
-        Self { reader, program, place: Place::Types }
+        Self { reader, program, place: Place::Origin }
     }
 
     /// The whole file.
@@ -73,6 +74,7 @@ impl<'a> Parser<'a> {
 
     fn item(&mut self) -> Parse<()> {
         match self.token.kind {
+            Kind::Keyword(Keyword::Imported) => self.imported(),
             Kind::Keyword(Keyword::Type) => self.type_item(),
             Kind::Keyword(Keyword::Registers) => self.registers(),
             Kind::Keyword(Keyword::Global) => self.global(),
@@ -89,7 +91,7 @@ impl<'a> Parser<'a> {
             Kind::Keyword(Keyword::Rung) => self.rung(),
             _ => {
                 let problem = self.unexpected("a declaration or a rung").hint(
-                    "a line starts with type, registers, global, task, program, function_block, function, input, output, \
+                    "a line starts with imported, type, registers, global, task, program, function_block, function, input, output, \
                      inout, temp, var, const or rung",
                 );
                 self.give_up(problem)
@@ -102,7 +104,7 @@ impl<'a> Parser<'a> {
         if place < self.place {
             let what = self.source.slice(start);
             let problem = Diagnostic::new(Code::UnexpectedToken, start, format!("`{what}` stands here too late"));
-            let order = "the order is: types, registers, globals, tasks, units, instances of programs";
+            let order = "the order is: imported, types, registers, globals, tasks, units, instances of programs";
             self.report(problem.hint(order));
         }
         self.place = self.place.max(place);

@@ -9,7 +9,7 @@ mod statements;
 mod types;
 pub(in crate::frontend) mod words;
 
-use crate::ladder::{Comment, Program, Unit, UnitKind};
+use crate::ladder::{Comment, Origin, Program, Unit, UnitKind};
 use crate::source::Span;
 use unicode_width::UnicodeWidthStr;
 
@@ -20,6 +20,10 @@ const LINE_WIDTH: usize = 100;
 /// spell, is printed with a quote or a blank there.
 pub fn print(program: &Program) -> String {
     let mut page = Page { comments: &program.comments, ..Page::default() };
+    if program.origin == Origin::Imported {
+        page.line(0);
+        page.push("imported");
+    }
     types::print(&mut page, &program.types);
     if let Some(registers) = &program.registers {
         page.item(registers.span.start, true);

@@ -5,7 +5,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::frontend::text::token::{Keyword, Kind};
 use crate::frontend::text::{Parse, literals};
 use crate::ladder::{
-    Expression, ExpressionKind, Literal, Name, ProgramInstance, Registers, Setting, Task, Unit, UnitKind, VariableClass,
+    Expression, ExpressionKind, Literal, Name, Origin, ProgramInstance, Registers, Setting, Task, Unit, UnitKind,
+    VariableClass,
 };
 use crate::source::Span;
 
@@ -18,6 +19,20 @@ impl Parser<'_> {
         let declaration = self.type_declaration()?;
         self.item_end("another declaration or a rung")?;
         self.program.types.push(declaration);
+        Ok(())
+    }
+
+    /// `imported`: what follows came from another tool, and what that accepts is at most a warning.
+    pub(super) fn imported(&mut self) -> Parse<()> {
+        let start = self.token.span;
+        if self.program.origin == Origin::Imported {
+            return self.give_up(Diagnostic::new(Code::DuplicateClause, start, "this was said before"));
+        }
+        self.come_to(Place::Origin, start);
+        self.anchor(start.start);
+        self.advance();
+        self.item_end("a declaration or a rung")?;
+        self.program.origin = Origin::Imported;
         Ok(())
     }
 

@@ -1,12 +1,10 @@
 //! Configurations, resources, tasks and program instances.
 
-use std::collections::{HashMap, HashSet};
-
-use super::expression;
+use super::Report;
 use super::xml::Node;
-use super::{Pou, Report};
-use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{Expression, ExpressionKind, Literal, Name, Program, ProgramInstance, Task, UnitKind, key};
+use crate::diagnostic::Code;
+use crate::frontend::graph::expression;
+use crate::ladder::{Expression, ExpressionKind, Literal, Name, Program, ProgramInstance, Task};
 use crate::source::Span;
 
 /// The configurations of a project.
@@ -14,14 +12,8 @@ pub(super) fn configurations<'d, 'a>(root: Node<'d, 'a>) -> impl Iterator<Item =
     root.all("instances").flat_map(|instances| instances.all("configurations")).flat_map(|all| all.all("configuration"))
 }
 
-/// Reads tasks and program instances. Where no program has two instances, each runs under its own name. The result holds the
-/// programs that no instance names, where there are instances.
-pub(super) fn read(
-    root: Node<'_, '_>,
-    program: &mut Program,
-    pous: &mut [Pou<'_, '_>],
-    report: &mut Report,
-) -> HashSet<String> {
+/// Reads tasks and program instances.
+pub(super) fn read(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     for configuration in configurations(root) {
         for what in ["accessVars", "configVars"] {
             for list in configuration.all(what).filter(|list| list.children().next().is_some()) {
@@ -51,31 +43,6 @@ pub(super) fn read(
             }
         }
     }
-    let mut counts: HashMap<String, usize> = HashMap::new();
-    for instance in &program.instances {
-        *counts.entry(instance.program.key()).or_default() += 1;
-    }
-    let known = |name: &Name| {
-        pous.iter().any(|pou| pou.unit.name.key() == name.key() && matches!(pou.unit.kind, UnitKind::Program { .. }))
-    };
-    for instance in program.instances.iter().filter(|instance| !known(&instance.program)) {
-        let message = format!("there is no program `{}`", instance.program.text);
-        report.error(Code::UndeclaredName, instance.span, message);
-    }
-    let programs = pous.iter().filter(|pou| matches!(pou.unit.kind, UnitKind::Program { .. }));
-    let idle = programs.map(|pou| pou.unit.name.key()).filter(|name| !counts.is_empty() && !counts.contains_key(name));
-    let idle = idle.collect();
-    if counts.values().all(|count| *count == 1) {
-        let instances = std::mem::take(&mut program.instances);
-        let mut tasks: HashMap<String, Option<Name>> =
-            instances.into_iter().map(|instance| (instance.program.key(), instance.task)).collect();
-        for pou in pous {
-            if let UnitKind::Program { task } = &mut pou.unit.kind {
-                *task = tasks.remove(&key(&pou.unit.name.text)).flatten();
-            }
-        }
-    }
-    idle
 }
 
 fn instance(node: Node<'_, '_>, task: Option<&Name>, report: &mut Report) -> Option<ProgramInstance> {
@@ -102,17 +69,4 @@ fn interval(text: &str, span: Span, report: &mut Report) -> Option<Expression> {
     let read = report.read(read, span)?;
     // Zero is how some say that a task runs as often as it can.
     Some(read).filter(|read| !matches!(read.kind, ExpressionKind::Literal(Literal::Time(0))))
-}
-
-/// Keeps programs from running that no task runs, in a file that says what its tasks run.
-pub(super) fn switch_off(program: &mut Program, idle: &HashSet<String>, report: &mut Report) {
-    for unit in program.units.iter_mut().filter(|unit| idle.contains(&unit.name.key())) {
-        if matches!(unit.kind, UnitKind::Program { .. }) {
-            let message = format!("no task runs the program `{}`", unit.name.text);
-            report.push(Diagnostic::new(Code::NeverRuns, unit.span, message).hint("its rungs are read as `rung off`"));
-            for rung in &mut unit.rungs {
-                rung.enabled = false;
-            }
-        }
-    }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::expression::{self, Fault};
 use super::xml::Node;
 use super::{Pou, Report};
 use crate::diagnostic::Code;
 use crate::elementary::Elementary;
+use crate::frontend::graph::expression::{self, Fault};
 use crate::ladder::{
     ArrayItem, Comment, Dimension, Expression, ExpressionKind, Field, Literal, MemberValue, Name, TypeDeclaration,
     TypeKind, TypeReference, Unit, UnitKind, Variable, VariableClass,

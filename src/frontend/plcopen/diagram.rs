@@ -1,151 +1,16 @@
-//! The elements of a body in LD or FBD and the wires between them, each named by its `localId`.
-//!
-//! What comes out has no name left to resolve: a wire names the element, and the pin of a block, that it comes from.
+//! Reads the elements of a body in LD or FBD and the wires between them, each named by its `localId`.
 
 use std::collections::{HashMap, HashSet};
 
-use super::expression;
-use super::report::Report;
 use super::xml::Node;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ladder::{Expression, ExpressionKind, Name, Reference};
+use crate::frontend::graph::diagram::{
+    Block, Coil, Diagram, Edge, InputPin, Item, ItemKind, Modifier, OutputPin, Source, Storage, negate,
+};
+use crate::frontend::graph::expression;
+use crate::frontend::graph::report::Report;
+use crate::ladder::{Expression, ExpressionKind, Name};
 use crate::source::Span;
-
-/// A body.
-#[derive(Default)]
-pub(super) struct Diagram {
-    /// The elements, in order of the file.
-    pub(super) items: Vec<Item>,
-    /// Those with a wire from nowhere, which was reported.
-    pub(super) faulty: HashSet<usize>,
-}
-
-/// One element.
-pub(super) struct Item {
-    pub(super) id: u64,
-    pub(super) span: Span,
-    pub(super) x: i64,
-    pub(super) y: i64,
-    /// `executionOrderId`; 0 says nothing.
-    pub(super) order: u64,
-    pub(super) kind: ItemKind,
-}
-
-/// What is done to the value of a pin, contact, coil or variable.
-#[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
-pub(super) struct Modifier {
-    pub(super) negated: bool,
-    pub(super) edge: Option<Edge>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Edge {
-    Rising,
-    Falling,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Storage {
-    Set,
-    Reset,
-}
-
-/// What an element is. `inputs` of one pin are its wires: the power there is the OR of theirs.
-pub(super) enum ItemKind {
-    LeftRail,
-    /// Takes power and does nothing.
-    RightRail,
-    Contact {
-        operand: Expression,
-        modifier: Modifier,
-        inputs: Vec<Source>,
-    },
-    /// A coil, or an `outVariable` or `inOutVariable` with a wire to it.
-    Coil(Coil),
-    Block(Block),
-    /// An `inVariable`; or an `inOutVariable` as what it gives.
-    Value(Expression),
-    /// Gives on to its continuations.
-    Connector {
-        inputs: Vec<Source>,
-    },
-    Continuation {
-        name: String,
-    },
-    Jump {
-        label: Option<Name>,
-        inputs: Vec<Source>,
-    },
-    Label(Name),
-    Comment(String),
-}
-
-pub(super) struct Coil {
-    pub(super) target: Reference,
-    pub(super) modifier: Modifier,
-    pub(super) storage: Option<Storage>,
-    pub(super) inputs: Vec<Source>,
-    /// Whether it is drawn as a variable rather than as a coil.
-    pub(super) variable: bool,
-    /// What it gives as a variable: an `inOutVariable`.
-    pub(super) value: Option<Expression>,
-}
-
-pub(super) struct Block {
-    pub(super) type_name: Name,
-    /// None for a function.
-    pub(super) instance: Option<Reference>,
-    pub(super) inputs: Vec<InputPin>,
-    pub(super) outputs: Vec<OutputPin>,
-}
-
-pub(super) struct InputPin {
-    pub(super) name: Name,
-    pub(super) modifier: Modifier,
-    /// Of an in-out parameter.
-    pub(super) in_out: bool,
-    pub(super) sources: Vec<Source>,
-}
-
-pub(super) struct OutputPin {
-    pub(super) name: Name,
-    pub(super) negated: bool,
-}
-
-/// Where a wire comes from. Numbers are places among the items and among the pins of one.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub(super) enum Source {
-    /// A left rail.
-    Rail,
-    /// The right side of a contact or coil.
-    Power(usize),
-    /// A variable or expression.
-    Value(usize),
-    /// An output of a block.
-    Output(usize, usize),
-    /// The variable at an in-out pin of a block.
-    InOut(usize, usize),
-}
-
-impl Source {
-    /// The element that has to run first.
-    pub(super) fn item(self) -> Option<usize> {
-        match self {
-            Self::Power(item) | Self::Output(item, _) | Self::InOut(item, _) => Some(item),
-            Self::Rail | Self::Value(_) => None,
-        }
-    }
-}
-
-impl Block {
-    pub(super) fn input(&self, name: &str) -> Option<usize> {
-        self.inputs.iter().position(|pin| pin.name.text.eq_ignore_ascii_case(name))
-    }
-
-    pub(super) fn output(&self, name: &str) -> Option<usize> {
-        self.outputs.iter().position(|pin| pin.name.text.eq_ignore_ascii_case(name))
-    }
-}
 
 /// A wire as written.
 struct Wire {
@@ -179,7 +44,7 @@ fn wires<'d>(point: Node<'d, '_>) -> impl Iterator<Item = Wire> + 'd {
 pub(super) fn read(body: Node<'_, '_>, report: &mut Report) -> Diagram {
     let mut reader = Reader {
         report,
-        diagram: Diagram::default(),
+        diagram: Diagram::new("localId"),
         ids: HashMap::new(),
         connectors: HashMap::new(),
         wires: Vec::new(),
@@ -525,9 +390,3 @@ fn follow(ends: &[End], feeds: &HashMap<usize, Vec<End>>) -> Vec<Source> {
 
 /// How many connectors one wire is followed through.
 const MOST_CONNECTORS: usize = 64;
-
-/// The negation of a value.
-pub(super) fn negate(value: Expression) -> Expression {
-    let span = value.span;
-    Expression { kind: ExpressionKind::Unary(crate::ladder::UnaryOperator::Not, Box::new(value)), span }
-}

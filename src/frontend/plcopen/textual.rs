@@ -1,12 +1,12 @@
 //! Bodies in LD whose rungs are written out: `<rung>` holds its elements in series, each naming its variable in an attribute.
 //! Tools for verification write them so.
 
-use super::expression;
-use super::network::coil_kind;
-use super::report::Report;
-use super::types::Signatures;
 use super::xml::Node;
 use crate::diagnostic::Code;
+use crate::frontend::graph::coil_kind;
+use crate::frontend::graph::expression;
+use crate::frontend::graph::report::Report;
+use crate::frontend::graph::types::Signatures;
 use crate::ladder::functions::Function;
 use crate::ladder::{
     Argument, BlockCall, Branch, Circuit, ContactKind, Element, ElementKind, ExpressionKind, Name, Reference, Rung,

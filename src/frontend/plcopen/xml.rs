@@ -110,11 +110,6 @@ impl<'d, 'a> Node<'d, 'a> {
         self.data().text.trim()
     }
 
-    /// Where its text starts and ends.
-    pub(super) fn text_span(self) -> Span {
-        self.data().text_span
-    }
-
     /// Where in the file what a span of its [`Node::text`] shows stands; all of the text where parts of it are escaped.
     pub(super) fn place(self, span: Span) -> Span {
         let data = self.data();

@@ -88,13 +88,17 @@ impl Parser<'_> {
             }
         }
         let from = self.copied_from();
-        let address = if self.take(Kind::Keyword(Keyword::At)) { Some(self.located()?) } else { None };
+        let mut address = if self.take(Kind::Keyword(Keyword::At)) { Some(self.located()?) } else { None };
         if !self.take(Kind::Colon) {
             let problem = self.unexpected("`:`");
             return self.give_up(problem.hint("a declaration looks like this: a : BOOL := TRUE;"));
         }
         let ty = self.type_reference()?;
         let lower = self.subrange()?;
+        // OpenPLC Editor 4 writes the address behind the type.
+        if address.is_none() && self.take(Kind::Keyword(Keyword::At)) {
+            address = Some(self.located()?);
+        }
         let initial = if self.take(Kind::Assign) { Some(self.initial_value()?) } else { lower };
         for edge in ["R_EDGE", "F_EDGE"] {
             if self.at_word(edge) {

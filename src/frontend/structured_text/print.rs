@@ -10,12 +10,15 @@ mod names;
 mod order;
 mod power;
 mod rungs;
-mod uses;
+pub(in crate::frontend) mod uses;
 mod words;
 
-use names::Names;
+pub(in crate::frontend) use calls::is_iec;
+pub(in crate::frontend) use declarations::{Instances, instances, used};
+pub(in crate::frontend) use names::Names;
+pub(in crate::frontend) use order::of_units;
 use rungs::Rungs;
-use words::Words;
+pub(in crate::frontend) use words::Words;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{Comment, Program, Rung, Unit, UnitKind, key};
@@ -32,11 +35,11 @@ pub fn print(program: &Program) -> Result<String, Vec<Diagnostic>> {
         problems.push(Diagnostic::new(Code::CannotConvert, registers.span, message));
     }
     let mut names = Names::of(program);
-    let instances = declarations::instances(program, &mut names);
+    let instances = instances(program, &mut names);
     let mut text = String::new();
     let mut comments = Comments { rest: &program.comments };
     declarations::types(&mut text, program, Words { names: &names });
-    for place in order::of_units(program) {
+    for place in of_units(program) {
         let unit = &program.units[place];
         text.push_str(&self::unit(program, unit, &instances, &mut names, &mut comments, &mut problems));
     }
@@ -49,7 +52,7 @@ pub fn print(program: &Program) -> Result<String, Vec<Diagnostic>> {
 fn unit(
     program: &Program,
     unit: &Unit,
-    instances: &declarations::Instances,
+    instances: &Instances,
     names: &mut Names,
     comments: &mut Comments<'_>,
     problems: &mut Vec<Diagnostic>,
@@ -71,15 +74,36 @@ fn unit(
     text.push_str(&format!("{word} {name}{result}\n"));
     let first_rung = unit.rungs.first().map_or(unit.span.end, |rung| rung.span.start);
     let declared = comments.before(first_rung, 1);
-    let mut rungs = Rungs::new(program, unit, names, problems);
-    let body = rungs.all(|rung| before_rung(rung, comments));
-    let variables = std::mem::take(&mut rungs.variables);
+    let (body, variables) = statements(program, unit, names, comments, problems);
     declarations::variables(&mut text, program, unit, &variables, Words { names }, problems);
     text.push_str(&declared);
     text.push('\n');
     text.push_str(&body);
     text.push_str(&format!("END_{word}\n\n"));
     text
+}
+
+/// The body of a unit, and the variables that it needs beside the declared ones: name and type.
+fn statements(
+    program: &Program,
+    unit: &Unit,
+    names: &mut Names,
+    comments: &mut Comments<'_>,
+    problems: &mut Vec<Diagnostic>,
+) -> (String, Vec<(String, String)>) {
+    let mut rungs = Rungs::new(program, unit, names, problems);
+    let body = rungs.all(|rung| before_rung(rung, comments));
+    (body, std::mem::take(&mut rungs.variables))
+}
+
+/// The body of a unit for files of other formats; as [`statements`], without the comments of the file.
+pub(in crate::frontend) fn body(
+    program: &Program,
+    unit: &Unit,
+    names: &mut Names,
+    problems: &mut Vec<Diagnostic>,
+) -> (String, Vec<(String, String)>) {
+    statements(program, unit, names, &mut Comments { rest: &[] }, problems)
 }
 
 /// The comments before a rung, and its name and title as one more.

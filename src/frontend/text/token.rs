@@ -127,6 +127,7 @@ impl Kind {
                     | K::Const
                     | K::Global
                     | K::Registers
+                    | K::Imported
                     | K::Rung
                     | K::VarInput
                     | K::VarOutput
@@ -247,6 +248,7 @@ keywords! {
         Const "const",
         Global "global",
         Registers "registers",
+        Imported "imported",
         Rung "rung",
     }
     /// Those of files of structured text.

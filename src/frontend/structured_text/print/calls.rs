@@ -14,7 +14,7 @@ use crate::source::Span;
 const REGISTER_MACHINE: [&str; 9] = ["TT", "TS", "UC", "DC", "DR", "BS", "BC", "SHIFTL", "SHIFTR"];
 
 /// Whether other compilers have a block.
-pub(super) fn is_iec(block: StandardBlock) -> bool {
+pub(in crate::frontend) fn is_iec(block: StandardBlock) -> bool {
     !REGISTER_MACHINE.contains(&block.name())
 }
 

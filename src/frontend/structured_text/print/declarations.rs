@@ -11,16 +11,16 @@ use crate::ladder::library::StandardBlock;
 use crate::ladder::{Expression, Program, TypeKind, Unit, UnitKind, Variable, VariableClass, key};
 
 /// What runs, as it is written.
-pub(super) struct Instances {
+pub(in crate::frontend) struct Instances {
     /// The names of program types that are not those of their units, by key.
-    pub(super) types: HashMap<String, String>,
+    pub(in crate::frontend) types: HashMap<String, String>,
     /// Each instance: its name, its program's key, its task.
-    list: Vec<(String, String, Option<String>)>,
+    pub(in crate::frontend) list: Vec<(String, String, Option<String>)>,
 }
 
 /// The instances of the programs. A program that none names has one of its own name, and its type another name then: one name stands
 /// for one thing.
-pub(super) fn instances(program: &Program, names: &mut Names) -> Instances {
+pub(in crate::frontend) fn instances(program: &Program, names: &mut Names) -> Instances {
     let mut types = HashMap::new();
     let mut list = Vec::new();
     let named: HashSet<String> = program.instances.iter().map(|instance| instance.program.key()).collect();
@@ -93,16 +93,21 @@ pub(super) fn types(text: &mut String, program: &Program, words: Words<'_>) {
     text.push_str("END_TYPE\n\n");
 }
 
-/// All variables of a unit: the global ones that it uses, its own, the instances that their calls declare, and those that its
-/// statements need beside them.
-pub(super) fn variables(
-    text: &mut String,
-    program: &Program,
+/// What a unit uses beside what it declares.
+pub(in crate::frontend) struct Used<'p> {
+    /// Global variables.
+    pub(in crate::frontend) globals: Vec<&'p Variable>,
+    /// The instances that their calls declare: name and type, as they are written.
+    pub(in crate::frontend) instances: Vec<(String, String)>,
+}
+
+/// What a unit uses beside what it declares.
+pub(in crate::frontend) fn used<'p>(
+    program: &'p Program,
     unit: &Unit,
-    added: &[(String, String)],
     words: Words<'_>,
     problems: &mut Vec<Diagnostic>,
-) {
+) -> Used<'p> {
     for variable in &unit.variables {
         let block = variable.ty.as_ref().and_then(|ty| StandardBlock::from_name(&ty.name.text));
         if block.is_some_and(|block| !is_iec(block)) {
@@ -148,13 +153,23 @@ pub(super) fn variables(
             uses::expression(initial, &mut visit);
         }
     }
-    let externals: Vec<&Variable> = program
-        .globals
-        .iter()
-        .filter(|global| used.contains(&global.name.key()) && !own.contains(&global.name.key()))
-        .collect();
+    let is_used = |global: &&Variable| used.contains(&global.name.key()) && !own.contains(&global.name.key());
+    Used { globals: program.globals.iter().filter(is_used).collect(), instances }
+}
+
+/// All variables of a unit: the global ones that it uses, its own, the instances that their calls declare, and those that its
+/// statements need beside them.
+pub(super) fn variables(
+    text: &mut String,
+    program: &Program,
+    unit: &Unit,
+    added: &[(String, String)],
+    words: Words<'_>,
+    problems: &mut Vec<Diagnostic>,
+) {
+    let Used { globals, instances } = used(program, unit, words, problems);
     for (constant, head) in [(false, "VAR_EXTERNAL"), (true, "VAR_EXTERNAL CONSTANT")] {
-        let listed = externals.iter().filter(|global| (global.class == VariableClass::Constant) == constant);
+        let listed = globals.iter().filter(|global| (global.class == VariableClass::Constant) == constant);
         let lines: Vec<String> = listed
             .map(|global| declaration(&Variable { initial: None, address: None, ..(*global).clone() }, words))
             .collect();

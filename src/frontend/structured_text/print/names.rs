@@ -110,7 +110,7 @@ const KEYWORDS: &[&str] = &[
 ];
 
 /// The names of a program as they are written.
-pub(super) struct Names {
+pub(in crate::frontend) struct Names {
     /// Those that are written otherwise, by their keys.
     renamed: HashMap<String, String>,
     /// The keys of all names that are taken.
@@ -121,7 +121,7 @@ pub(super) struct Names {
 
 impl Names {
     /// The names of a program.
-    pub(super) fn of(program: &Program) -> Self {
+    pub(in crate::frontend) fn of(program: &Program) -> Self {
         let mut declared: Vec<&Name> = Vec::new();
         for ty in &program.types {
             declared.push(&ty.name);
@@ -151,7 +151,7 @@ impl Names {
     }
 
     /// A name as it is written.
-    pub(super) fn spell<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
+    pub(in crate::frontend) fn spell<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
         if is_identifier(name) {
             return Cow::Borrowed(name);
         }
@@ -163,22 +163,22 @@ impl Names {
     }
 
     /// The name of a function: some are keywords too.
-    pub(super) fn spell_function<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
+    pub(in crate::frontend) fn spell_function<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
         if Function::from_name(name).is_some() { Cow::Borrowed(name) } else { self.spell(name) }
     }
 
     /// The name of a type: the elementary ones are keywords.
-    pub(super) fn spell_type<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
+    pub(in crate::frontend) fn spell_type<'a>(&'a self, name: &'a str) -> Cow<'a, str> {
         if Elementary::from_name(name).is_some() { Cow::Borrowed(name) } else { self.spell(name) }
     }
 
     /// Whether a name is written otherwise.
-    pub(super) fn is_renamed(&self, name: &str) -> bool {
+    pub(in crate::frontend) fn is_renamed(&self, name: &str) -> bool {
         self.renamed.contains_key(&key(name))
     }
 
     /// A name that nothing else has.
-    pub(super) fn fresh(&mut self, stem: &str) -> String {
+    pub(in crate::frontend) fn fresh(&mut self, stem: &str) -> String {
         let number = self.numbers.entry(key(stem)).or_default();
         loop {
             *number += 1;

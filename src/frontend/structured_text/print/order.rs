@@ -6,7 +6,7 @@ use super::uses::{self, Use};
 use crate::ladder::{Program, Unit, UnitKind};
 
 /// The places of functions and function blocks, each behind those that it uses, and then of the programs as they stand.
-pub(super) fn of_units(program: &Program) -> Vec<usize> {
+pub(in crate::frontend) fn of_units(program: &Program) -> Vec<usize> {
     let is_program = |place: usize| matches!(program.units[place].kind, UnitKind::Program { .. });
     let places: HashMap<String, usize> =
         program.units.iter().enumerate().map(|(place, unit)| (unit.name.key(), place)).collect();

@@ -1,13 +1,13 @@
 //! What rungs mention: variables, functions, blocks. Each thing is shown once for each place where it stands.
 
 use crate::ladder::{
-    BlockCall, Circuit, ElementKind, Expression, ExpressionKind, Name, Program, Reference, Root, Statement,
+    BlockCall, Circuit, Element, ElementKind, Expression, ExpressionKind, Name, Program, Reference, Root, Statement,
     StatementKind, Step, Wire,
 };
 
 /// Something that is mentioned.
 #[derive(Clone, Copy)]
-pub(super) enum Use<'a> {
+pub(in crate::frontend) enum Use<'a> {
     /// A variable, read or written, or an instance that is called.
     Reference(&'a Reference),
     /// A function in an expression.
@@ -16,10 +16,10 @@ pub(super) enum Use<'a> {
     Block(&'a Name, &'a Reference),
 }
 
-type Visit<'v, 'a> = &'v mut dyn FnMut(Use<'a>);
+pub(in crate::frontend) type Visit<'v, 'a> = &'v mut dyn FnMut(Use<'a>);
 
 /// The instances that no declaration but their call declares.
-pub(super) fn blocks_declared_by_use<'a>(program: &'a Program, visit: &mut dyn FnMut(&'a Name)) {
+pub(in crate::frontend) fn blocks_declared_by_use<'a>(program: &'a Program, visit: &mut dyn FnMut(&'a Name)) {
     for rung in program.rungs() {
         circuit(&rung.circuit, &mut |mentioned| {
             if let Use::Block(_, instance) = mentioned
@@ -31,25 +31,27 @@ pub(super) fn blocks_declared_by_use<'a>(program: &'a Program, visit: &mut dyn F
     }
 }
 
-pub(super) fn circuit<'a>(circuit_: &'a Circuit, visit: Visit<'_, 'a>) {
-    for element in circuit_.branches.iter().flat_map(|branch| &branch.elements) {
-        match &element.kind {
-            ElementKind::Contact { operand, .. } => expression(operand, visit),
-            ElementKind::Coil { target, .. } => reference(target, visit),
-            ElementKind::Block(block) => call(block, visit),
-            ElementKind::Condition(condition) => expression(condition, visit),
-            ElementKind::Assignment { target, value } => {
-                reference(target, visit);
-                expression(value, visit);
-            }
-            ElementKind::Statements(list) => statements(list, visit),
-            ElementKind::Parallel(inner) => circuit(inner, visit),
-            ElementKind::Jump { .. } | ElementKind::Return => {}
+pub(in crate::frontend) fn circuit<'a>(circuit_: &'a Circuit, visit: Visit<'_, 'a>) {
+    circuit_.branches.iter().flat_map(|branch| &branch.elements).for_each(|one| element(one, visit));
+}
+
+pub(in crate::frontend) fn element<'a>(element: &'a Element, visit: Visit<'_, 'a>) {
+    match &element.kind {
+        ElementKind::Contact { operand, .. } => expression(operand, visit),
+        ElementKind::Coil { target, .. } => reference(target, visit),
+        ElementKind::Block(block) => call(block, visit),
+        ElementKind::Condition(condition) => expression(condition, visit),
+        ElementKind::Assignment { target, value } => {
+            reference(target, visit);
+            expression(value, visit);
         }
+        ElementKind::Statements(list) => statements(list, visit),
+        ElementKind::Parallel(inner) => circuit(inner, visit),
+        ElementKind::Jump { .. } | ElementKind::Return => {}
     }
 }
 
-pub(super) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
+pub(in crate::frontend) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
     reference(&call.instance, visit);
     if let Some(ty) = &call.type_name {
         visit(Use::Block(ty, &call.instance));
@@ -63,7 +65,7 @@ pub(super) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
     }
 }
 
-pub(super) fn statements<'a>(list: &'a [Statement], visit: Visit<'_, 'a>) {
+pub(in crate::frontend) fn statements<'a>(list: &'a [Statement], visit: Visit<'_, 'a>) {
     for statement in list {
         match &statement.kind {
             StatementKind::Assignment { target, value } => {
@@ -99,7 +101,7 @@ pub(super) fn statements<'a>(list: &'a [Statement], visit: Visit<'_, 'a>) {
     }
 }
 
-pub(super) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) {
+pub(in crate::frontend) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) {
     match &expression_.kind {
         ExpressionKind::Literal(_) => {}
         ExpressionKind::Read(read) => reference(read, visit),
@@ -122,7 +124,7 @@ pub(super) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) 
     }
 }
 
-pub(super) fn reference<'a>(reference: &'a Reference, visit: Visit<'_, 'a>) {
+pub(in crate::frontend) fn reference<'a>(reference: &'a Reference, visit: Visit<'_, 'a>) {
     visit(Use::Reference(reference));
     for step in &reference.steps {
         if let Step::Index(indices, _) = step {
@@ -132,7 +134,7 @@ pub(super) fn reference<'a>(reference: &'a Reference, visit: Visit<'_, 'a>) {
 }
 
 /// Whether a mention depends on an index that is computed while the program runs.
-pub(super) fn has_computed_index(mentioned: Use<'_>) -> bool {
+pub(in crate::frontend) fn has_computed_index(mentioned: Use<'_>) -> bool {
     let Use::Reference(reference) = mentioned else { return false };
     let is_literal = |index: &Expression| match &index.kind {
         ExpressionKind::Unary(_, operand) => matches!(operand.kind, ExpressionKind::Literal(_)),
@@ -145,7 +147,7 @@ pub(super) fn has_computed_index(mentioned: Use<'_>) -> bool {
 }
 
 /// The key of the name that a mention starts with.
-pub(super) fn root_key(mentioned: Use<'_>) -> Option<String> {
+pub(in crate::frontend) fn root_key(mentioned: Use<'_>) -> Option<String> {
     match mentioned {
         Use::Reference(reference) => match &reference.root {
             Root::Name(name) => Some(name.key()),

@@ -10,12 +10,12 @@ use crate::ladder::{
 
 /// Writes words with the names of a program.
 #[derive(Clone, Copy)]
-pub(super) struct Words<'a> {
-    pub(super) names: &'a Names,
+pub(in crate::frontend) struct Words<'a> {
+    pub(in crate::frontend) names: &'a Names,
 }
 
 impl Words<'_> {
-    pub(super) fn reference(self, reference: &Reference) -> String {
+    pub(in crate::frontend) fn reference(self, reference: &Reference) -> String {
         let mut text = match &reference.root {
             Root::Name(name) => self.names.spell(&name.text).into_owned(),
             Root::Address(address) => address.to_string(),
@@ -36,7 +36,7 @@ impl Words<'_> {
         expressions.map(|one| self.expression(one)).collect::<Vec<_>>().join(", ")
     }
 
-    pub(super) fn expression(self, expression: &Expression) -> String {
+    pub(in crate::frontend) fn expression(self, expression: &Expression) -> String {
         let mut text = String::new();
         self.push(&mut text, expression);
         text
@@ -110,7 +110,7 @@ impl Words<'_> {
         text.push_str(if parentheses { ")" } else { "" });
     }
 
-    pub(super) fn type_reference(self, ty: &TypeReference) -> String {
+    pub(in crate::frontend) fn type_reference(self, ty: &TypeReference) -> String {
         let name = self.names.spell_type(&ty.name.text);
         if ty.dimensions.is_empty() {
             return name.into_owned();
@@ -121,12 +121,12 @@ impl Words<'_> {
     }
 
     /// ` := value`, if there is one.
-    pub(super) fn initial(self, value: Option<&Expression>) -> String {
+    pub(in crate::frontend) fn initial(self, value: Option<&Expression>) -> String {
         value.map_or(String::new(), |value| format!(" := {}", self.expression(value)))
     }
 
     /// Statements, each line with its indent.
-    pub(super) fn statements(
+    pub(in crate::frontend) fn statements(
         self,
         list: &[Statement],
         indent: usize,
@@ -208,7 +208,7 @@ impl Words<'_> {
     }
 
     /// `IN := a`, `Q => b`; `None` for a circuit, which is no word.
-    pub(super) fn argument(self, argument: &Argument) -> Option<String> {
+    pub(in crate::frontend) fn argument(self, argument: &Argument) -> Option<String> {
         let pin = self.names.spell(&argument.pin.text);
         Some(match &argument.wire {
             Wire::Value(value) if argument.pin.text.is_empty() => self.expression(value),
@@ -219,7 +219,7 @@ impl Words<'_> {
     }
 
     /// `c := ADD(a, b)`: a box of a function without its EN.
-    pub(super) fn function_box(self, call: &BlockCall) -> String {
+    pub(in crate::frontend) fn function_box(self, call: &BlockCall) -> String {
         let name = call.instance.as_name().map_or("", |name| name.text.as_str());
         let is_result = |argument: &&Argument| {
             let pin = &argument.pin.text;
@@ -265,7 +265,7 @@ fn spell_pin<'a>(pin: &'a str, spelled: &'a str) -> &'a str {
 }
 
 /// The argument of a pin.
-pub(super) fn pin<'a>(call: &'a BlockCall, name: &str) -> Option<&'a Argument> {
+pub(in crate::frontend) fn pin<'a>(call: &'a BlockCall, name: &str) -> Option<&'a Argument> {
     call.arguments.iter().find(|argument| argument.pin.text.eq_ignore_ascii_case(name))
 }
 

@@ -9,11 +9,11 @@ use super::report::Report;
 use crate::diagnostic::{Code, Diagnostic};
 
 /// The elements in order of execution.
-pub(super) struct Order {
+pub(in crate::frontend) struct Order {
     /// Their places among the items, each once.
-    pub(super) items: Vec<usize>,
+    pub(in crate::frontend) items: Vec<usize>,
     /// For each item its place in `items`, if it runs.
-    pub(super) step: Vec<Option<usize>>,
+    pub(in crate::frontend) step: Vec<Option<usize>>,
 }
 
 /// What an element pulls, in order.
@@ -32,7 +32,7 @@ pub(super) fn sources(kind: &ItemKind) -> Vec<Source> {
 }
 
 /// The order of a body.
-pub(super) fn order(diagram: &Diagram, report: &mut Report) -> Order {
+pub(in crate::frontend) fn order(diagram: &Diagram, report: &mut Report) -> Order {
     let mut read = vec![false; diagram.items.len()];
     for item in &diagram.items {
         for source in sources(&item.kind) {
@@ -185,7 +185,11 @@ impl Walk<'_, '_> {
         if circle.len() > ids.len() {
             ids.push("…".to_owned());
         }
-        let message = format!("power runs in a circle through the elements with the localIds {}", ids.join(", "));
+        let message = format!(
+            "power runs in a circle through the elements with the {}s {}",
+            self.diagram.id_name,
+            ids.join(", ")
+        );
         let problem = Diagnostic::new(Code::PowerCycle, self.diagram.items[*first].span, message);
         self.report.push(problem.hint("only through a block can power come back, with its value of the scan before"));
     }

@@ -241,7 +241,7 @@ impl<'d, 'r> Builder<'d, 'r> {
                 ItemKind::Coil(_) => "coil",
                 _ => "jump",
             };
-            let message = format!("no wire reaches this {what} (localId {})", element.id);
+            let message = format!("no wire reaches this {what} ({} {})", diagram.id_name, element.id);
             self.report.error(Code::NotConnected, element.span, message);
         }
         self.feeds(item, inputs)

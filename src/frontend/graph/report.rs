@@ -9,7 +9,7 @@ use crate::source::Span;
 
 /// The diagnostics so far.
 #[derive(Default)]
-pub(super) struct Report {
+pub(in crate::frontend) struct Report {
     diagnostics: Vec<Diagnostic>,
     /// How many were left out.
     more: usize,
@@ -20,7 +20,7 @@ pub(super) struct Report {
 
 impl Report {
     /// Takes a diagnostic down.
-    pub(super) fn push(&mut self, problem: Diagnostic) {
+    pub(in crate::frontend) fn push(&mut self, problem: Diagnostic) {
         if self.diagnostics.len() < MOST_DIAGNOSTICS {
             self.diagnostics.push(problem);
         } else {
@@ -29,12 +29,12 @@ impl Report {
     }
 
     /// Takes a diagnostic down.
-    pub(super) fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+    pub(in crate::frontend) fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
         self.push(Diagnostic::new(code, span, message));
     }
 
     /// Counts a use of something that Rung has not.
-    pub(super) fn not_supported(&mut self, kind: impl Into<String>, span: Span) {
+    pub(in crate::frontend) fn not_supported(&mut self, kind: impl Into<String>, span: Span) {
         let kind = kind.into();
         if let Some(place) = self.places.get(&kind) {
             self.missing[*place].2 += 1;
@@ -45,7 +45,7 @@ impl Report {
     }
 
     /// Says why an expression at a place cannot be read.
-    pub(super) fn fault(&mut self, fault: Fault, span: Span) {
+    pub(in crate::frontend) fn fault(&mut self, fault: Fault, span: Span) {
         match fault {
             Fault::Bad(message) => self.error(Code::BadLiteral, span, message),
             Fault::NotSupported(kind) => self.not_supported(kind, span),
@@ -53,12 +53,17 @@ impl Report {
     }
 
     /// What was read, or nothing where it could not be read, which is then said.
-    pub(super) fn read<T>(&mut self, result: Result<T, Fault>, span: Span) -> Option<T> {
+    pub(in crate::frontend) fn read<T>(&mut self, result: Result<T, Fault>, span: Span) -> Option<T> {
         result.map_err(|fault| self.fault(fault, span)).ok()
     }
 
+    /// Whether nothing was said so far.
+    pub(in crate::frontend) fn is_empty(&self) -> bool {
+        self.diagnostics.is_empty() && self.missing.is_empty()
+    }
+
     /// All diagnostics.
-    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
+    pub(in crate::frontend) fn finish(mut self) -> Vec<Diagnostic> {
         for (kind, span, count) in self.missing {
             let times = if count == 1 { "once".to_owned() } else { format!("{count} times, first") };
             let message = format!("Rung has no {kind}: used {times} here");

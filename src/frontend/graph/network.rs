@@ -634,7 +634,7 @@ fn inverted_contact(call: &BlockCall, feeds: &[Feed]) -> Option<ElementKind> {
 }
 
 /// What a coil with these modifiers does.
-pub(super) fn coil_kind(set: Option<bool>, negated: bool, rising: Option<bool>) -> CoilKind {
+pub(in crate::frontend) fn coil_kind(set: Option<bool>, negated: bool, rising: Option<bool>) -> CoilKind {
     match (set, rising) {
         (Some(true), _) => CoilKind::Set,
         (Some(false), _) => CoilKind::Reset,

@@ -13,7 +13,7 @@ use crate::ladder::{
 use crate::source::Span;
 
 /// All that the file declares, by name.
-pub(super) struct Signatures {
+pub(in crate::frontend) struct Signatures {
     units: HashMap<String, Pins>,
     types: HashMap<String, TypeKind>,
     globals: HashMap<String, TypeReference>,
@@ -30,7 +30,7 @@ struct Pins {
 }
 
 /// A type of a name.
-pub(super) fn elementary(ty: Elementary, span: Span) -> TypeReference {
+pub(in crate::frontend) fn elementary(ty: Elementary, span: Span) -> TypeReference {
     TypeReference::of_name(Name::new(ty.name(), span))
 }
 
@@ -51,7 +51,7 @@ fn addresses(variables: &[Variable]) -> HashMap<String, String> {
 
 impl Signatures {
     /// Of a file with these declarations.
-    pub(super) fn new<'u>(program: &Program, units: impl Iterator<Item = &'u Unit>) -> Self {
+    pub(in crate::frontend) fn new<'u>(program: &Program, units: impl Iterator<Item = &'u Unit>) -> Self {
         let pins = |unit: &Unit| {
             let of_class = |classes: &[VariableClass]| {
                 let found = unit.variables.iter().filter(|variable| classes.contains(&variable.class));
@@ -77,23 +77,23 @@ impl Signatures {
     }
 
     /// Whether a name is that of a function.
-    pub(super) fn is_function(&self, name: &str) -> bool {
+    pub(in crate::frontend) fn is_function(&self, name: &str) -> bool {
         self.units.get(&key(name)).map_or_else(|| Function::from_name(name).is_some(), |unit| unit.function)
     }
 
     /// Whether what a box of that type does is nothing but what its pins show.
-    pub(super) fn is_standard(&self, name: &str) -> bool {
+    pub(in crate::frontend) fn is_standard(&self, name: &str) -> bool {
         !self.units.contains_key(&key(name))
             && (StandardBlock::from_name(name).is_some() || Function::from_name(name).is_some())
     }
 
     /// Whether anything declares a block of that name; an unknown one may have any pins.
-    pub(super) fn is_known_block(&self, name: &str) -> bool {
+    pub(in crate::frontend) fn is_known_block(&self, name: &str) -> bool {
         self.units.get(&key(name)).map_or_else(|| StandardBlock::from_name(name).is_some(), |unit| !unit.function)
     }
 
     /// Whether a pin of a block is one of its outputs.
-    pub(super) fn is_output(&self, block: &str, pin: &str) -> bool {
+    pub(in crate::frontend) fn is_output(&self, block: &str, pin: &str) -> bool {
         pin.eq_ignore_ascii_case("ENO")
             || match self.units.get(&key(block)) {
                 Some(unit) => unit.outputs.iter().any(|(name, _)| name.text.eq_ignore_ascii_case(pin)),
@@ -102,7 +102,7 @@ impl Signatures {
     }
 
     /// The first BOOL among the inputs of a block, which takes the power on its left.
-    pub(super) fn power_input(&self, name: &str) -> Option<String> {
+    pub(in crate::frontend) fn power_input(&self, name: &str) -> Option<String> {
         match self.units.get(&key(name)) {
             Some(unit) => first_bool(&unit.inputs),
             None => {
@@ -113,7 +113,7 @@ impl Signatures {
     }
 
     /// The first BOOL among the outputs of a block, which gives the power on its right.
-    pub(super) fn power_output(&self, name: &str) -> Option<String> {
+    pub(in crate::frontend) fn power_output(&self, name: &str) -> Option<String> {
         match self.units.get(&key(name)) {
             Some(unit) => first_bool(&unit.outputs),
             None => {
@@ -124,7 +124,7 @@ impl Signatures {
     }
 
     /// The type of a pin of a block.
-    pub(super) fn pin(&self, block: &str, pin: &str, span: Span) -> Option<TypeReference> {
+    pub(in crate::frontend) fn pin(&self, block: &str, pin: &str, span: Span) -> Option<TypeReference> {
         match self.units.get(&key(block)) {
             Some(unit) => {
                 let mut pins = unit.inputs.iter().chain(&unit.outputs);
@@ -145,7 +145,7 @@ impl Signatures {
     }
 
     /// The type that a function gives at an output, from those of its operands by their pins.
-    pub(super) fn result(
+    pub(in crate::frontend) fn result(
         &self,
         name: &str,
         output: &str,
@@ -174,7 +174,8 @@ impl Signatures {
 }
 
 fn first_bool(pins: &[(Name, TypeReference)]) -> Option<String> {
-    let is_bool = |ty: &TypeReference| ty.dimensions.is_empty() && super::declarations::is(&ty.name, Elementary::Bool);
+    let is_bool =
+        |ty: &TypeReference| ty.dimensions.is_empty() && ty.name.text.eq_ignore_ascii_case(Elementary::Bool.name());
     pins.iter().find(|(_, ty)| is_bool(ty)).map(|(name, _)| name.text.clone())
 }
 
@@ -194,15 +195,15 @@ fn wider(one: TypeReference, other: TypeReference) -> TypeReference {
 }
 
 /// The variables that a body sees.
-pub(super) struct Scope<'s> {
-    pub(super) signatures: &'s Signatures,
+pub(in crate::frontend) struct Scope<'s> {
+    pub(in crate::frontend) signatures: &'s Signatures,
     variables: HashMap<String, TypeReference>,
     addresses: HashMap<String, String>,
 }
 
 impl<'s> Scope<'s> {
     /// Of a unit.
-    pub(super) fn new(signatures: &'s Signatures, unit: &Unit) -> Self {
+    pub(in crate::frontend) fn new(signatures: &'s Signatures, unit: &Unit) -> Self {
         let mut variables = by_name(&unit.variables);
         if let UnitKind::Function { result: Some(result) } = &unit.kind {
             variables.insert(unit.name.key(), result.clone());
@@ -211,13 +212,13 @@ impl<'s> Scope<'s> {
     }
 
     /// Whether the unit declares a name itself.
-    pub(super) fn declares(&self, name: &str) -> bool {
+    pub(in crate::frontend) fn declares(&self, name: &str) -> bool {
         self.variables.contains_key(&key(name))
     }
 
     /// What a name stands for where storage is shared: the address of a located variable, else the name. A global begins
     /// with a dot.
-    pub(super) fn storage(&self, name: &str) -> String {
+    pub(in crate::frontend) fn storage(&self, name: &str) -> String {
         let name = key(name);
         let local = self.variables.contains_key(&name);
         let address = if local { self.addresses.get(&name) } else { self.signatures.addresses.get(&name) };
@@ -229,7 +230,7 @@ impl<'s> Scope<'s> {
     }
 
     /// The declared type of a variable.
-    pub(super) fn variable(&self, name: &str) -> Option<&TypeReference> {
+    pub(in crate::frontend) fn variable(&self, name: &str) -> Option<&TypeReference> {
         let name = key(name);
         self.variables.get(&name).or_else(|| self.signatures.globals.get(&name))
     }
@@ -265,7 +266,7 @@ impl<'s> Scope<'s> {
     }
 
     /// The type of a value; `None` where it takes that of what is around it, or is not known.
-    pub(super) fn value(&self, value: &Expression) -> Option<TypeReference> {
+    pub(in crate::frontend) fn value(&self, value: &Expression) -> Option<TypeReference> {
         let span = value.span;
         match &value.kind {
             ExpressionKind::Literal(literal) => match literal {

@@ -5,38 +5,37 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::Pou;
-use super::diagram::{self, Diagram, ItemKind, Source};
+use super::diagram::{Diagram, ItemKind, Source};
 use super::network::{self, Vertex};
 use super::order::{self, Order, sources};
 use super::report::Report;
 use super::types::{Scope, Signatures};
 use super::vertices::{Builder, value_of};
-use super::xml::Node;
-use crate::ladder::{Circuit, Comment, Expression, ExpressionKind, Name, Reference, Root, Rung, Step, Variable};
+use crate::ladder::{Circuit, Comment, Expression, ExpressionKind, Name, Reference, Root, Rung, Step, Unit, Variable};
 use crate::source::Span;
 
 /// The longest comment that becomes the title of a rung, in characters.
 const LONGEST_TITLE: usize = 100;
 
-/// The rungs of a body in LD or FBD, and the variables that wires in it need.
-pub(super) fn read(
-    content: Node<'_, '_>,
-    pou: &Pou<'_, '_>,
+/// The rungs of a diagram that is the body of a unit, and the variables that wires in it need. Comments that become no titles
+/// are added to `comments`, at the place of the body.
+pub(in crate::frontend) fn rungs(
+    diagram: &Diagram,
+    unit: &Unit,
+    body: Span,
     signatures: &Signatures,
     comments: &mut Vec<Comment>,
     report: &mut Report,
 ) -> (Vec<Rung>, Vec<Variable>) {
-    let diagram = diagram::read(content, report);
-    let order = order::order(&diagram, report);
-    let scope = Scope::new(signatures, &pou.unit);
-    let mut builder = Builder::new(&diagram, &order, &scope, report);
+    let order = order::order(diagram, report);
+    let scope = Scope::new(signatures, unit);
+    let mut builder = Builder::new(diagram, &order, &scope, report);
     builder.build();
     let (vertices, hidden) = (builder.vertices, builder.hidden);
-    let groups = groups(&diagram, &order, &scope, &vertices);
-    let mut rungs: Vec<Placed> = groups.iter().map(|members| Placed::new(&diagram, &vertices, members)).collect();
-    label(&diagram, &mut rungs);
-    title(&diagram, &mut rungs, content.span(), comments);
+    let groups = groups(diagram, &order, &scope, &vertices);
+    let mut rungs: Vec<Placed> = groups.iter().map(|members| Placed::new(diagram, &vertices, members)).collect();
+    label(diagram, &mut rungs);
+    title(diagram, &mut rungs, body, comments);
     (rungs.into_iter().map(|placed| placed.rung).collect(), hidden)
 }
 

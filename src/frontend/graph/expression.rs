@@ -17,7 +17,7 @@ const MOST_PARTS: usize = 2000;
 
 /// Why an expression cannot be read.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Fault {
+pub(in crate::frontend) enum Fault {
     /// It is none.
     Bad(String),
     /// It has something that Rung has not, of this kind.
@@ -27,17 +27,17 @@ pub(super) enum Fault {
 type Read<T> = Result<T, Fault>;
 
 /// Reads an expression.
-pub(super) fn expression(text: &str, span: Span) -> Read<Expression> {
+pub(in crate::frontend) fn expression(text: &str, span: Span) -> Read<Expression> {
     whole(text, span, |parser| parser.binary(0))
 }
 
 /// Reads an initial value: an expression, `[1, 2, 8(0)]`, or `(x := 1, y := 2)`.
-pub(super) fn initial_value(text: &str, span: Span) -> Read<Expression> {
+pub(in crate::frontend) fn initial_value(text: &str, span: Span) -> Read<Expression> {
     whole(text, span, |parser| parser.value())
 }
 
 /// Reads a variable, a member, a bit or an address.
-pub(super) fn reference(text: &str, span: Span) -> Read<Reference> {
+pub(in crate::frontend) fn reference(text: &str, span: Span) -> Read<Reference> {
     match expression(text, span)?.kind {
         ExpressionKind::Read(reference) => Ok(reference),
         _ => Err(Fault::Bad(format!("`{}` is no variable", clipped(text)))),
@@ -45,7 +45,7 @@ pub(super) fn reference(text: &str, span: Span) -> Read<Reference> {
 }
 
 /// Reads an address such as `%IX0.3`.
-pub(super) fn address(text: &str, span: Span) -> Read<crate::ladder::Address> {
+pub(in crate::frontend) fn address(text: &str, span: Span) -> Read<crate::ladder::Address> {
     if !text.starts_with('%') || text.len() < 3 || !text.is_ascii() {
         return Err(Fault::Bad(format!("`{}` is not an address", clipped(text))));
     }
@@ -53,7 +53,7 @@ pub(super) fn address(text: &str, span: Span) -> Read<crate::ladder::Address> {
 }
 
 /// A text short enough for a message.
-pub(super) fn clipped(text: &str) -> String {
+pub(in crate::frontend) fn clipped(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((at, _)) => format!("{}…", &text[..at]),
         None => text.to_owned(),
@@ -77,7 +77,7 @@ fn whole(text: &str, span: Span, read: impl FnOnce(&mut Parser<'_>) -> Read<Expr
 }
 
 /// Whether a text is a name.
-pub(super) fn is_name(text: &str) -> bool {
+pub(in crate::frontend) fn is_name(text: &str) -> bool {
     text.starts_with(starts_name) && text.chars().all(continues_name)
 }
 
