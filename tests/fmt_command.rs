@@ -38,3 +38,15 @@ fn a_link_stays_a_link_and_its_file_is_formatted() {
     assert!(link.is_symlink());
     assert_eq!(fs::read_to_string(&real).ok().as_deref(), Some(CANONICAL));
 }
+
+#[test]
+fn a_file_of_another_format_is_refused_and_stays_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let other = "PROGRAM p\n  VAR a : BOOL; END_VAR\n  a := NOT a;\nEND_PROGRAM\n";
+    fs::write(folder.path().join("p.rung"), other).expect("written");
+    let done = fmt(folder.path(), &["p.rung"]);
+    assert_eq!(done.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(said.starts_with("error[R0108]") && said.contains("rung convert"), "{said}");
+    assert_eq!(fs::read_to_string(folder.path().join("p.rung")).ok().as_deref(), Some(other));
+}

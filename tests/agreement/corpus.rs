@@ -17,9 +17,9 @@ use rung::opt;
 use rung::source::Source;
 use rung_runtime::Scan;
 
-use crate::support::random_stimuli::Stimuli;
+use crate::support::random_stimuli::{Stimuli, observed};
 use crate::support::rig::Rig;
-use crate::support::same_trace::{observed_as, same_trace};
+use crate::support::same_trace::same_trace;
 
 /// Scans on the engines, and those with the evaluator and of what was converted.
 const SCANS: u64 = 1000;
@@ -111,13 +111,10 @@ fn engines(checked: &Checked) -> Result<(), String> {
     let mut jit = Jit::compile(&optimised).map_err(|error| error.to_string())?;
     let mut rig = Rig::new(checked)?;
     let mut images = [plain.layout.initial_image(), plain.layout.initial_image()];
-    let mut stimuli = Stimuli::new(1, checked);
+    let mut stimuli = Stimuli::new(1, checked, &observed(&plain.layout));
     for scan in 0..SCANS {
         let (now, changes) = stimuli.next();
-        let names = |input: &str| observed_as(&plain.layout, input);
-        for (name, value) in
-            changes.iter().flat_map(|(input, value)| names(input).into_iter().map(|name| (name, *value)))
-        {
+        for (name, value) in changes {
             let observed = plain.layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(&name));
             let slot = plain.layout.slot(observed.ok_or(format!("nothing is named {name}"))?.slot);
             images.iter_mut().for_each(|image| slot.write(image, value));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::support::random_stimuli::Stimuli;
+use crate::support::random_stimuli::{Stimuli, observed};
 use crate::{codes, parse};
 use rung::check::check;
 use rung::engine::interp::Interpreter;
@@ -48,7 +48,7 @@ fn files_of_the_corpus_are_read_and_every_engine_computes_the_same() {
         let mut engines: [Box<dyn Scan>; 2] =
             [Box::new(Interpreter::new(&logic)), Box::new(Jit::compile(&optimised).expect("it compiles"))];
         let mut images = [logic.layout.initial_image(), logic.layout.initial_image()];
-        let mut stimuli = Stimuli::new(1, &checked);
+        let mut stimuli = Stimuli::new(1, &checked, &observed(&logic.layout));
         for scan in 0..1000 {
             let (now, changes) = stimuli.next();
             for (name, value) in changes {

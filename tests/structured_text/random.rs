@@ -12,7 +12,7 @@ use rung::source::Source;
 use rung_runtime::Scan;
 
 use crate::support::random_program::random_program;
-use crate::support::random_stimuli::Stimuli;
+use crate::support::random_stimuli::{Stimuli, observed};
 
 /// A program on the interpreter.
 struct Machine {
@@ -33,11 +33,6 @@ impl Machine {
         let observed = self.layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(name));
         let slot = self.layout.slot(observed.unwrap_or_else(|| panic!("nothing is named {name}")).slot);
         slot.write(&mut self.image, value);
-    }
-
-    fn observed(&self) -> Vec<(String, Value)> {
-        let observed = self.layout.observed().iter();
-        observed.map(|one| (one.name.clone(), self.layout.slot(one.slot).read(&self.image))).collect()
     }
 
     fn get(&self, name: &str) -> Option<Value> {
@@ -91,7 +86,7 @@ fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
         });
         let drawn = checked(&program).expect("it was tried");
         let (mut first, mut second) = (Machine::new(&drawn), Machine::new(&again));
-        let mut stimuli = Stimuli::new(seed, &drawn, &first.observed());
+        let mut stimuli = Stimuli::new(seed, &drawn, &observed(&first.layout));
         for scan in 0..100 {
             let (now, changes) = stimuli.next();
             for (name, value) in changes {

@@ -3,6 +3,7 @@
 use rung::check::{Checked, VariableId};
 use rung::elementary::{Elementary, Value};
 use rung::ladder::VariableClass;
+use rung::logic::Layout;
 
 use super::dice::Dice;
 
@@ -67,6 +68,11 @@ impl Stimuli {
         }
         (now, changes)
     }
+}
+
+/// Everything that can be observed in a layout, with what it starts with.
+pub(crate) fn observed(layout: &Layout) -> Vec<(String, Value)> {
+    layout.observed().iter().map(|one| (one.name.clone(), layout.slot(one.slot).initial)).collect()
 }
 
 /// The names of the variables that are inputs, global ones first.

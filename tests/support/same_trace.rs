@@ -8,7 +8,7 @@ use rung::lower::lower;
 use rung::source::Source;
 use rung_runtime::Scan;
 
-use super::random_stimuli::Stimuli;
+use super::random_stimuli::{Stimuli, observed};
 
 /// A program on the interpreter.
 struct Machine {
@@ -41,35 +41,19 @@ impl Machine {
     }
 }
 
-/// The names under which an input can be observed: with several programs each has the name of its instance before it, and an input
-/// of a block has none.
-pub(crate) fn observed_as(layout: &Layout, input: &str) -> Vec<String> {
-    let is_it = |name: &str| match name.len().checked_sub(input.len()) {
-        Some(before) => {
-            name.is_char_boundary(before)
-                && name[before..].eq_ignore_ascii_case(input)
-                && (before == 0 || name[..before].ends_with('.'))
-        }
-        None => false,
-    };
-    let names = layout.observed().iter().map(|observed| observed.name.clone());
-    names.filter(|name| is_it(name)).collect()
-}
-
 /// Compares what can be observed of the first program with what the second has under the same names, after every scan.
 ///
 /// # Errors
 /// The first scan and variable in which they differ.
 pub(crate) fn same_trace(first: &Checked, second: &Checked, seed: u64, scans: u64) -> Result<(), String> {
-    let mut stimuli = Stimuli::new(seed, first);
+    let drawn = first;
     let (mut first, mut second) = (Machine::new(first)?, Machine::new(second)?);
+    let mut stimuli = Stimuli::new(seed, drawn, &observed(&first.layout));
     for scan in 0..scans {
         let (now, changes) = stimuli.next();
-        for (input, value) in changes {
-            for name in observed_as(&first.layout, &input) {
-                first.set(&name, value)?;
-                second.set(&name, value)?;
-            }
+        for (name, value) in changes {
+            first.set(&name, value)?;
+            second.set(&name, value)?;
         }
         for machine in [&mut first, &mut second] {
             machine.interpreter.scan(&mut machine.image, now);

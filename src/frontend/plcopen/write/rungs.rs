@@ -335,7 +335,10 @@ impl<'p> Artist<'p> {
                     if callee.is_function && pin.eq_ignore_ascii_case(&callee.name) {
                         pin = "OUT".to_owned();
                     }
-                    let touched = Touched { leaves: at_once, ..self.written(target) };
+                    let mut touched = Touched { leaves: at_once, ..self.written(target) };
+                    if !callee.is_function {
+                        self.touch(&call.instance, false, &mut touched);
+                    }
                     outputs.push((pin, self.words.reference(target), touched));
                 }
             }
