@@ -190,13 +190,19 @@ impl Checker<'_> {
             })?;
         }
         let (place, ty) = self.place(&call.instance)?;
-        if !is_constant(&place) {
-            let message = "an instance cannot be chosen while the program runs";
-            let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
-            self.report.push(problem.hint("its index must be a constant; write a call for each"));
-            return None;
-        }
+        self.check_chosen(&place, call.instance.span)?;
         Some((place, ty))
+    }
+
+    /// Whether it is known which instance is meant; else that is reported.
+    fn check_chosen(&mut self, place: &Place, span: Span) -> Option<()> {
+        if is_constant(place) {
+            return Some(());
+        }
+        let message = "an instance cannot be chosen while the program runs";
+        let problem = Diagnostic::new(Code::NotConstant, span, message);
+        self.report.push(problem.hint("its index must be a constant; write a call for each"));
+        None
     }
 
     /// The block type of that name.
@@ -416,6 +422,9 @@ impl Checker<'_> {
             let message = format!("`{name}` takes {wants}, and this is {found}");
             self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
             return None;
+        }
+        if self.types.holds_instance(ty) {
+            self.check_chosen(&place, value.span)?;
         }
         Some(place)
     }
