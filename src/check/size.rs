@@ -308,6 +308,8 @@ impl Checker<'_> {
         }
         if all > MOST_INLINED {
             let (code, span, what) = largest;
+            // What is drawn does not count, and is part of the code.
+            let code = code.min(all);
             let message = format!("calls and loops written out come to {all} elements, {code} of them by {what}");
             let problem = Diagnostic::new(Code::TooLargeInlined, span, message);
             self.report.push(problem.hint(format!(
