@@ -6,9 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use rung::check;
+use rung::diagnostic;
 use rung::draw::{self, TextOptions};
 use rung::elementary::Elementary;
 use rung::frontend;
+use rung::ladder::functions::{Function, ParameterType, StandardFunction};
 use rung::ladder::library::StandardBlock;
 use rung::source::Source;
 
@@ -57,6 +60,7 @@ fn made_anew(stem: &str, page: &str) -> String {
             ("example", "") => text.push_str(&fenced(&example)),
             ("pins", block) => text.push_str(&pins(block, &old)),
             ("variants", block) => text.push_str(&variants(block)),
+            ("functions", names) => text.push_str(&functions(names, &old)),
             _ => panic!("{stem}.md has a mark of no known kind: {line}"),
         }
         text.push_str("<!-- end -->\n");
@@ -92,6 +96,26 @@ fn pins(block: &str, old: &[&str]) -> String {
         let meaning = meaning.and_then(|rest| rest.trim_end_matches('|').rsplit('|').next()).unwrap_or("").trim();
         assert!(!meaning.is_empty(), "what is {} of {} for?", pin.name, block.name());
         table.push_str(&format!("{row} {meaning} |\n"));
+    }
+    table
+}
+
+/// The table of some functions with their parameters, from the library.
+fn functions(names: &str, old: &[&str]) -> String {
+    let mut table = String::from("| function | of | |\n|---|---|---|\n");
+    for name in names.split(' ') {
+        let Some(Function::Standard(function)) = Function::from_name(name) else {
+            panic!("there is no function {name}")
+        };
+        let mut parameters: Vec<&str> = function.parameters().iter().map(|parameter| parameter.name).collect();
+        parameters.extend(function.is_extensible().then_some("…"));
+        let generic = function.parameters().iter().any(|parameter| parameter.ty == ParameterType::Generic);
+        let class = if generic { function.class().describe() } else { "TIME" };
+        let start = format!("| `{name}(");
+        let meaning = old.iter().find(|line| line.starts_with(&start));
+        let meaning = meaning.and_then(|row| row.trim_end_matches('|').rsplit('|').next()).unwrap_or("").trim();
+        assert!(!meaning.is_empty(), "what does {name} compute?");
+        table.push_str(&format!("{start}{})` | {class} | {meaning} |\n", parameters.join(", ")));
     }
     table
 }
@@ -168,12 +192,59 @@ fn every_standard_block_has_a_page_with_its_pins() {
     assert_eq!(missing, Vec::<&str>::new());
 }
 
+/// The pages beside those about elements.
+fn chapters() -> Vec<PathBuf> {
+    let paths = fs::read_dir(docs()).expect("the manual").map(|entry| entry.expect("an entry").path());
+    paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()
+}
+
+/// The programs of a page: its blocks of text that begin as a file does.
+fn programs(page: &str) -> Vec<&str> {
+    let blocks = page.split("```text\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let begins = |block: &&str| {
+        let word = block.split([' ', '\n']).next().unwrap_or_default();
+        ["program", "function", "function_block", "global", "type", "task"].contains(&word)
+    };
+    blocks.filter(begins).collect()
+}
+
+#[test]
+fn every_standard_function_has_a_row_on_a_page_that_help_finds() {
+    let pages = pages();
+    for function in StandardFunction::ALL {
+        let row = format!("\n| `{}(", function.name());
+        let page = pages.iter().find(|(_, page)| page.contains(&row)).map(|(stem, _)| stem);
+        let stem = page.unwrap_or_else(|| panic!("no page has {}", function.name()));
+        // The words of the text that are functions too lead there as well.
+        assert_eq!(help(function.name()), help(stem), "{}", function.name());
+    }
+}
+
+#[test]
+fn programs_in_the_chapters_are_sound() {
+    let chapters = chapters();
+    for name in ["units", "tasks", "arrays", "boxes", "statements", "native-text"] {
+        let path = chapters.iter().find(|path| path.file_stem().is_some_and(|stem| stem == name)).expect("a chapter");
+        let page = read(path);
+        let programs = programs(&page);
+        assert!(!programs.is_empty(), "{name} shows no program");
+        for program in programs {
+            let source = Source::new(name, program);
+            let parsed = frontend::parse(&source);
+            let (checked, mut problems) = check::check(&parsed.program);
+            problems.extend(parsed.diagnostics);
+            assert!(checked.is_some(), "{name}: {}", diagnostic::render(&source, &problems));
+        }
+    }
+}
+
 #[test]
 fn every_link_of_the_manual_leads_somewhere() {
     let mut files: Vec<PathBuf> = pages().keys().map(|stem| docs().join(format!("elements/{stem}.md"))).collect();
-    files.push(docs().join("README.md"));
+    files.extend(chapters());
     for file in files {
-        let page = read(&file);
+        // What stands in back quotes is no link.
+        let page: String = read(&file).split('`').step_by(2).collect();
         for target in page.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let path = file.parent().expect("a folder").join(target);
             assert!(path.exists(), "{} links to {target}", file.display());
@@ -231,7 +302,13 @@ fn help_knows_elements_by_what_is_drawn_and_written() {
         (&["coil", "(S)", "( )", "--(/)--", "(n)", "OTE"], "coils"),
         (&["parallel", ">x>", "[ ]", "Node"], "branches"),
         (&["condition", "assignment", ":="], "expressions"),
-        (&["EN", "block"], "blocks"),
+        (&["instance", "block"], "blocks"),
+        (&["EN", "function box"], "box"),
+        (&["IF", "for", "While"], "statements"),
+        (&["function_block", "inout"], "units"),
+        (&["index", "#fault", "struct"], "arrays"),
+        (&["priority"], "tasks"),
+        (&["overflow"], "bad input"),
     ] {
         for topic in topics {
             assert_eq!(help(topic), help(page), "{topic}");

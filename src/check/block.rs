@@ -135,8 +135,8 @@ impl Checker<'_> {
 
     fn arguments(&mut self, pins: &Pins, call: &BlockCall, walk: &mut Walk) -> Box<Wired> {
         let mut wired = Box::default();
-        for argument in &call.arguments {
-            self.argument(pins, argument, &mut wired, walk);
+        for (place, argument) in call.arguments.iter().enumerate() {
+            self.argument(pins, (place, argument), &mut wired, walk);
         }
         wired
     }
@@ -263,8 +263,14 @@ impl Checker<'_> {
     }
 
     /// Sorts in what is wired by one argument.
-    fn argument(&mut self, pins: &Pins, argument: &ladder::Argument, wired: &mut Wired, walk: &mut Walk) {
-        let target = self.target(pins, argument, &mut wired.seen);
+    fn argument(
+        &mut self,
+        pins: &Pins,
+        (place, argument): (usize, &ladder::Argument),
+        wired: &mut Wired,
+        walk: &mut Walk,
+    ) {
+        let target = self.target(pins, (place, argument), &mut wired.seen);
         match (&argument.wire, target) {
             (ladder::Wire::Output(reference), target) => self.output_argument(target, reference, wired),
             (wire, Some(Target::Enable)) => wired.enable = self.wire(wire, Type::Elementary(Elementary::Bool), walk),
@@ -294,16 +300,17 @@ impl Checker<'_> {
         }
     }
 
-    /// The pin that an argument is wired to.
+    /// The pin that an argument is wired to: without a name the input at its place.
     fn target<'a>(
         &mut self,
         pins: &'a Pins,
-        argument: &ladder::Argument,
+        (place, argument): (usize, &ladder::Argument),
         seen: &mut Vec<(String, Span)>,
     ) -> Option<Target<'a>> {
         let name = &argument.pin.text;
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
-        let (input, output) = (Pins::find(&pins.inputs, name), pins.output(name));
+        let positional = pins.inputs.get(place).filter(|_| name.is_empty());
+        let (input, output) = (positional.or_else(|| Pins::find(&pins.inputs, name)), pins.output(name));
         let found = match (is_output, input, output) {
             (false, Some(pin), _) => Target::Input(pin),
             (true, _, Some(pin)) => Target::Output(pin),
@@ -311,7 +318,11 @@ impl Checker<'_> {
             (true, None, None) if name.eq_ignore_ascii_case("ENO") => Target::Enabled,
             (_, input, output) => {
                 let (what, all) = if is_output { ("output", &pins.outputs) } else { ("input", &pins.inputs) };
-                let message = format!("{} has no {what} `{name}`", pins.name);
+                let message = if name.is_empty() {
+                    format!("{} has no {} inputs", pins.name, place + 1)
+                } else {
+                    format!("{} has no {what} `{name}`", pins.name)
+                };
                 let hint = match (input, output) {
                     (Some(_), _) => format!("`{name}` is an input: write `{name} := value`"),
                     (_, Some(_)) => format!("`{name}` is an output: write `{name} => variable`"),

@@ -125,8 +125,8 @@ impl Checker<'_> {
     pub(super) fn standard_box(&mut self, function: Function, call: &BlockCall, walk: &mut Walk) -> Option<Boxed> {
         let name = call.instance.as_name()?;
         let mut wired = Box::<Wired>::default();
-        for argument in &call.arguments {
-            self.box_argument(function, name, argument, &mut wired, walk);
+        for (place, argument) in call.arguments.iter().enumerate() {
+            self.box_argument(function, name, (place, argument), &mut wired, walk);
         }
         self.finish_box(function, name, call, wired)
     }
@@ -135,11 +135,11 @@ impl Checker<'_> {
         &mut self,
         function: Function,
         name: &Name,
-        argument: &Argument,
+        (place, argument): (usize, &Argument),
         wired: &mut Wired,
         walk: &mut Walk,
     ) {
-        let pin = self.box_pin(function, name, argument, wired);
+        let pin = self.box_pin(function, name, (place, argument), wired);
         wired.faulty |= pin.is_none();
         match &argument.wire {
             ladder::Wire::Value(value) => self.box_value(function, pin, value, wired),
@@ -212,21 +212,33 @@ impl Checker<'_> {
         }
     }
 
-    /// The pin of a function that an argument is wired to.
-    fn box_pin(&mut self, function: Function, name: &Name, argument: &Argument, wired: &mut Wired) -> Option<Pin> {
+    /// The pin of a function that an argument is wired to: without a name the one at its place.
+    fn box_pin(
+        &mut self,
+        function: Function,
+        name: &Name,
+        (place, argument): (usize, &Argument),
+        wired: &mut Wired,
+    ) -> Option<Pin> {
         let text = &argument.pin.text;
         let is = |other: &str| text.eq_ignore_ascii_case(other);
         let is_output = matches!(argument.wire, ladder::Wire::Output(_));
         let pin = match function {
             _ if is_output && (is("OUT") || is(&name.text)) => Some(Pin::Output),
             _ if is_output => is("ENO").then_some(Pin::Enabled),
+            Function::Standard(function) if text.is_empty() => function.parameter(place).map(|_| Pin::Input(place)),
             Function::Standard(function) => function.place(text).map(Pin::Input),
+            _ if text.is_empty() => (place == 0).then_some(Pin::Input(0)),
             Function::Convert { .. } | Function::Truncate { .. } => is("IN").then_some(Pin::Input(0)),
         };
         let pin = pin.or((!is_output && is("EN")).then_some(Pin::Enable));
         let Some(pin) = pin else {
             let what = if is_output { "output" } else { "input" };
-            let message = format!("{} has no {what} `{}`", name.text, clipped(text));
+            let message = if text.is_empty() {
+                format!("{} has no {} inputs", name.text, place + 1)
+            } else {
+                format!("{} has no {what} `{}`", name.text, clipped(text))
+            };
             let hint = if is_output {
                 "its outputs are `OUT` and `ENO`".to_owned()
             } else {

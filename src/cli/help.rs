@@ -1,6 +1,7 @@
 //! `rung help`: the command's help, a subcommand's, or an element's page of the manual.
 //!
-//! The pages are those of `docs/elements/`, embedded; what the terminal shows must never be said anywhere but there.
+//! The pages are those of the manual, `docs/elements/` and some chapters, embedded; what the terminal shows must never
+//! be said anywhere but there.
 
 mod markdown;
 
@@ -44,9 +45,20 @@ const PAGES: &[Page] = pages! {
     "coils": "coil" "coils" "negated coil" "set coil" "reset coil" "latch" "unlatch" "ote" "otl" "otu"
         "( )" "()" "(/)" "(s)" "(r)" "(p)" "(n)";
     "branches": "branch" "branches" "parallel" "series" "node" "nodes" "bridge" "[ ]" "[]" "[|]" ">x>";
+    "jumps": "jump" "jumps" "return" ">>";
     "expressions": "expression" "expressions" "condition" "assignment" "compare" "{ }" "{}" ":=";
+    "../statements": "statement" "statements" "if" "case" "for" "while" "exit" "structured text";
+    "../boxes": "box" "boxes" "function box" "en" "eno";
     "../functions": "function" "functions";
-    "blocks": "block" "blocks" "function block" "en" "eno" "pin" "instance";
+    "arithmetic": "arithmetic" "add" "sub" "mul" "div" "mod" "abs" "move" "add_time" "sub_time" "mul_time" "div_time"
+        "multime" "divtime";
+    "mathematics": "mathematics" "sqrt" "ln" "log" "exp" "sin" "cos" "tan" "asin" "acos" "atan" "expt";
+    "bits": "bits" "bit string" "shl" "shr" "rol" "ror" "and" "or" "xor" "not";
+    "selection": "selection" "sel" "mux" "min" "max" "limit";
+    "comparison": "comparison" "gt" "ge" "eq" "le" "lt" "ne";
+    "conversion": "conversion" "convert" "trunc";
+    "blocks": "block" "blocks" "function block" "pin" "instance";
+    "user_blocks": "user_blocks" "user block" "user function";
     "ton": "ton" "on-delay";
     "tof": "tof" "off-delay";
     "tp": "tp" "pulse timer";
@@ -64,6 +76,10 @@ const PAGES: &[Page] = pages! {
     "pid": "pid" "controller";
     "ramp": "ramp";
     "hysteresis": "hysteresis" "two-point switch";
+    "../units": "unit" "units" "function_block" "program" "inout" "in-out" "temp" "global" "inlining";
+    "../tasks": "task" "tasks" "interval" "priority" "round";
+    "../arrays": "array" "arrays" "struct" "structure" "enumeration" "index" "#fault" "fault";
+    "../bad-input": "bad input" "overflow" "division by zero" "nan";
     "../register-machine": "registers" "register machine" "ireg" "oreg" "hreg";
     "tt": "tt";
     "ts": "ts";
@@ -78,11 +94,11 @@ const PAGES: &[Page] = pages! {
 
 impl Page {
     /// The page that a topic names, in any case; a block that is there for several types is named with or
-    /// without one, and a function by its name.
+    /// without one, and a conversion by its name.
     fn of(topic: &str) -> Option<&'static Self> {
         let named = |name: &str| PAGES.iter().find(|page| page.names.contains(&name));
         let topic = topic.to_lowercase();
-        let function = || Function::from_name(&topic).and_then(|_| named("function"));
+        let function = || Function::from_name(&topic).and_then(|_| named("conversion"));
         named(&topic).or_else(function).or_else(|| {
             let (block, ty) = topic.rsplit_once('_')?;
             Elementary::from_name(ty).and_then(|_| named(block))

@@ -7,6 +7,8 @@ mod examples;
 mod faults;
 mod guards;
 mod jumps;
+mod nesting;
+mod passes;
 mod random;
 mod register_machine;
 mod statements;

@@ -205,7 +205,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
 /// What the evaluator says to a program under a seed's stimuli.
 fn trace(checked: &Checked, seed: u64) -> String {
     let mut oracle = Oracle::new(checked);
-    let mut stimuli = Stimuli::new(seed, checked);
+    let mut stimuli = Stimuli::new(seed, checked, &oracle.observed());
     let mut trace = format!("{:?}\n", oracle.names());
     for _ in 0..20 {
         let (now, changes) = stimuli.next();
@@ -235,7 +235,7 @@ fn run(program: &Program, seed: u64) -> Result<Vec<Activity>, Failure> {
     let failure = |heading, particulars| Failure { heading, particulars };
     let checked = checked(program).map_err(|problems| failure(DOES_NOT_CHECK, problems))?;
     let mut rig = Rig::new(&checked).map_err(|problem| failure("it does not compile", problem))?;
-    let mut stimuli = Stimuli::new(seed, &checked);
+    let mut stimuli = Stimuli::new(seed, &checked, &rig.oracle.observed());
     for scan in 0..number("RUNG_SCANS", SCANS) {
         let (now, changes) = stimuli.next();
         for (name, value) in &changes {

@@ -410,3 +410,48 @@ rung
          1  5 | 105      5",
     );
 }
+
+#[test]
+fn a_block_reads_and_writes_what_a_program_declares_at_an_address() {
+    follows(
+        "function_block counts
+input go
+output seen : INT
+rung
+  go {%MW4 := %MW4 + 1} {seen := %MW4}
+program p
+input a
+var n at %MW4 : INT := 5
+var fb : counts
+rung
+  a fb()",
+        "ms a | n fb.seen
+         0  0 | 5 0
+         1  1 | 6 6
+         2  1 | 7 7",
+    );
+}
+
+#[test]
+fn an_output_of_no_instance_reads_as_its_default() {
+    follows(
+        "function_block counts
+input go
+output n : INT := 7
+rung
+  go {n := n + 1}
+program p
+input i : INT
+output x, y : INT
+var own : array [0..1] of counts
+var standard : array [0..1] of CTU
+rung
+  [ own[0]() | own[1]() | standard[0](PV := 3) ]
+rung
+  {x := own[i].n} {y := standard[i].CV}",
+        "ms i | x y #fault
+         0  0 | 8 1 0
+         1  1 | 9 0 0
+         2  2 | 0 0 1",
+    );
+}

@@ -291,6 +291,7 @@ fn names_before_parentheses_call_functions() {
         ("`my f`(`a b` := a)", "my f<a b: a>"),
         ("AND(a, b) and or(c, d) = xor(e, f) MOD MOD(a, b)", "(AND<a, b> AND (or<c, d> = (xor<e, f> MOD MOD<a, b>)))"),
         ("NOT(a) + `NOT`(b)", "((NOT a) + NOT<b>)"),
+        ("`NOT`(a)", "NOT<a>"),
     ];
     for (text, expected) in cases {
         let ElementKind::Condition(expression) = element(&format!("{{{text}}}")) else { panic!("{text}") };

@@ -4,6 +4,7 @@
 mod random;
 
 #[path = "../support"]
+#[allow(dead_code, reason = "other test programs use the rest")]
 mod support {
     pub(crate) mod dice;
     pub(crate) mod drawing;

@@ -35,6 +35,11 @@ impl Machine {
         slot.write(&mut self.image, value);
     }
 
+    fn observed(&self) -> Vec<(String, Value)> {
+        let observed = self.layout.observed().iter();
+        observed.map(|one| (one.name.clone(), self.layout.slot(one.slot).read(&self.image))).collect()
+    }
+
     fn get(&self, name: &str) -> Option<Value> {
         let observed = self.layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(name))?;
         Some(self.layout.slot(observed.slot).read(&self.image))
@@ -86,7 +91,7 @@ fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
         });
         let drawn = checked(&program).expect("it was tried");
         let (mut first, mut second) = (Machine::new(&drawn), Machine::new(&again));
-        let mut stimuli = Stimuli::new(seed, &drawn);
+        let mut stimuli = Stimuli::new(seed, &drawn, &first.observed());
         for scan in 0..100 {
             let (now, changes) = stimuli.next();
             for (name, value) in changes {

@@ -166,6 +166,11 @@ impl<'a> Oracle<'a> {
         self.watched.iter().map(|(storage, ty)| storage.read(*ty))
     }
 
+    /// All names and their values.
+    pub(crate) fn observed(&self) -> Vec<(String, Value)> {
+        self.names().iter().map(|name| (name.clone(), self.get(name))).collect()
+    }
+
     /// Gives a name a value, as a copy-in does.
     ///
     /// # Panics

@@ -5,7 +5,6 @@ use rung::elementary::{Elementary, Value};
 use rung::ladder::VariableClass;
 
 use super::dice::Dice;
-use super::oracle::Oracle;
 
 const MILLISECOND: i64 = 1_000_000;
 
@@ -25,14 +24,12 @@ struct Input {
 }
 
 impl Stimuli {
-    /// The stimuli of a seed for a program.
-    pub(crate) fn new(seed: u64, checked: &Checked) -> Self {
+    /// The stimuli of a seed for a program, of which everything that can be observed is given with its value.
+    pub(crate) fn new(seed: u64, checked: &Checked, observed: &[(String, Value)]) -> Self {
         let mut dice = Dice::new(seed, 2);
-        let oracle = Oracle::new(checked);
-        let inputs = inputs(checked).into_iter().flat_map(|input| {
-            let parts = oracle.names().iter().filter(move |name| is_in(name, &input));
-            parts.map(|name| (name.clone(), oracle.get(name)))
-        });
+        let inputs = inputs(checked)
+            .into_iter()
+            .flat_map(|input| observed.iter().filter(move |(name, _)| is_in(name, &input)).cloned());
         let inputs = inputs.map(|(name, value)| {
             // Some flicker, some stay long enough for a timer.
             let percent = *dice.pick(&[50, 20, 8, 3]);

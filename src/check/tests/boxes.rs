@@ -211,3 +211,14 @@ fn a_function_remembers_nothing() {
         "global g : INT\nfunction f : INT\ninput x\nrung x (S %MX0.0) {g := g + 1} {f := g}\nprogram p\nvar b : BOOL\nrung f(x := b) (b)\n",
     );
 }
+
+#[test]
+fn in_a_statement_arguments_without_names_stand_in_their_places() {
+    let named = "{SUB(IN1 := _a, IN2 := 2, OUT => _a); t1(IN := _e, PT := T#1s);}";
+    let placed = "{SUB(_a, 2, OUT => _a); t1(_e, T#1s);}";
+    let of = |text: &str| clean(&format!("{BEFORE}var t1 : TON\nrung {text}"));
+    let [named, placed] = [named, placed].map(of);
+    assert_eq!(element(&named), element(&placed));
+    let too_many = found(&format!("{BEFORE}var t1 : TON\nrung {{t1(_e, T#1s, 3);}}"));
+    assert_eq!(too_many.iter().map(|(code, _)| *code).collect::<Vec<_>>(), [Code::UnknownPin]);
+}

@@ -263,13 +263,14 @@ impl Reader<'_> {
         if self.dialect == Dialect::Native || !is_call {
             return Ok(StatementKind::Assignment { target, value: self.expression()? });
         }
+        let is_operator = self.token.kind == Kind::Keyword(K::Not);
         let function = self.function_word();
         let arguments = self.arguments()?;
         let is_box = |argument: &Argument| {
             matches!(argument.wire, Wire::Output(_)) || argument.pin.text.eq_ignore_ascii_case("EN")
         };
         if !arguments.list.iter().any(is_box) {
-            let first = self.value_of_call(function, arguments, start.start);
+            let first = self.value_of_call(function, is_operator, arguments, start.start);
             return Ok(StatementKind::Assignment { target, value: self.tree_from(first)?.expression });
         }
         if self.token.kind != Kind::Semicolon {
@@ -283,11 +284,11 @@ impl Reader<'_> {
         Ok(StatementKind::Call(BlockCall { instance, type_name: None, arguments, power_output: None }))
     }
 
-    /// A call as an operand. NOT(a) is an operator, although it looks like a call.
-    fn value_of_call(&mut self, function: Name, arguments: Arguments, start: u32) -> Tree {
+    /// A call as an operand. NOT(a) is an operator, although it looks like a call; in back quotes it is the function.
+    fn value_of_call(&mut self, function: Name, is_operator: bool, arguments: Arguments, start: u32) -> Tree {
         let mut values: Vec<FunctionArgument> = arguments.list.into_iter().filter_map(function_argument).collect();
         let kind = match values.pop() {
-            Some(FunctionArgument { parameter: None, value }) if values.is_empty() && function.key() == "not" => {
+            Some(FunctionArgument { parameter: None, value }) if values.is_empty() && is_operator => {
                 ExpressionKind::Unary(UnaryOperator::Not, Box::new(value))
             }
             last => {
@@ -311,7 +312,7 @@ impl Reader<'_> {
             && values
             && let Some(function) = instance.as_name().cloned()
         {
-            let first = self.value_of_call(function, arguments, start);
+            let first = self.value_of_call(function, false, arguments, start);
             let value = self.tree_from(first)?;
             return self.statement_from_value(value);
         }

@@ -8,8 +8,11 @@ use super::shape::{Shape, Way};
 use super::{Entry, Generator, Instance, Kind};
 use crate::support::drawing::{self, NOWHERE};
 
+/// Of what class, how wide, where, and its names.
+type At = (VariableClass, Width, &'static [u32], &'static [(&'static str, Elementary)]);
+
 /// The addresses, far from each other, that a program may use, and the names under which it may declare them.
-const ADDRESSES: [(VariableClass, Width, &[u32], &[(&str, Elementary)]); 9] = {
+const ADDRESSES: [At; 9] = {
     use VariableClass::{Input, Memory, Output};
     [
         (Input, Width::Bit, &[1, 0], &[]),
