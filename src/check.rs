@@ -7,7 +7,8 @@
 //!    initial values.
 //! 2. `collect`: what the rungs declare by use (instances, addresses, registers), and how deep they nest.
 //! 3. `address`: which addresses share storage, and which overlap.
-//! 4. `network`, `jump`, `block`, `statement`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by element.
+//! 4. `network`, `jump`, `block`, `pins`, `statement`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by
+//!    element.
 //! 5. `usage`, `unit`: what only the whole program shows, such as unused names, double coils, and calls in a circle.
 //! 6. `configuration`: tasks, program instances and the register machine.
 //!
@@ -28,6 +29,7 @@ mod initial;
 mod jump;
 mod model;
 mod network;
+mod pins;
 mod place;
 mod register;
 mod report;

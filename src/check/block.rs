@@ -1,70 +1,16 @@
 //! Calls of blocks: the instance, its type, and what is wired to its pins.
 
 use super::function_box::{Boxable, Boxed};
-use super::model::{Call, Callee, Circuit, Input, Output, Place, Type, UnitId, Wire};
+use super::model::{Call, Callee, Circuit, Input, Output, Place, Type, Wire};
 use super::network::{Power, Walk};
+use super::pins::{Pin, Pins, Target};
 use super::register::is_constant;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
-use crate::ladder::library::{StandardBlock, Takes};
+use crate::ladder::library::Takes;
 use crate::ladder::{self, BlockCall, Name};
 use crate::source::Span;
-
-/// A pin of a standard block or of a unit, as calls see it.
-#[derive(Clone)]
-pub(super) struct Pin {
-    name: String,
-    ty: Type,
-    /// The range of its constants.
-    range: Option<(i64, i64)>,
-    takes: Takes,
-    /// Its place among the references of a unit, if it is one; else among inputs or outputs.
-    place: usize,
-}
-
-/// What is called, as calls see it.
-pub(super) struct Pins {
-    /// The type's name.
-    name: String,
-    inputs: Vec<Pin>,
-    outputs: Vec<Pin>,
-    /// Whether the first output is the result of a function.
-    has_result: bool,
-}
-
-impl Pins {
-    fn of_block(block: StandardBlock) -> Self {
-        let pin = |(place, pin): (usize, &ladder::library::Pin)| Pin {
-            name: pin.name.to_owned(),
-            ty: Type::Elementary(pin.ty),
-            range: pin.range,
-            takes: pin.takes,
-            place,
-        };
-        Self {
-            name: block.name().to_owned(),
-            inputs: block.inputs().iter().enumerate().map(pin).collect(),
-            outputs: block.outputs().iter().enumerate().map(pin).collect(),
-            has_result: false,
-        }
-    }
-
-    fn find<'a>(pins: &'a [Pin], name: &str) -> Option<&'a Pin> {
-        let wanted = ladder::key(name);
-        pins.iter().find(|pin| ladder::key(&pin.name) == wanted)
-    }
-
-    /// The output of that name; the result of a function is its `OUT`, too.
-    fn output(&self, name: &str) -> Option<&Pin> {
-        let result = || self.outputs.first().filter(|_| self.has_result && name.eq_ignore_ascii_case("OUT"));
-        Self::find(&self.outputs, name).or_else(result)
-    }
-
-    fn list<'a>(pins: impl Iterator<Item = &'a Pin>) -> String {
-        pins.map(|pin| format!("`{}`", pin.name)).collect::<Vec<_>>().join(", ")
-    }
-}
 
 /// The wires of a call, sorted by what they are for.
 #[derive(Default)]
@@ -82,14 +28,6 @@ struct Called {
     pins: Pins,
     /// None where the instance has a fault, which was reported.
     callee: Option<Callee>,
-}
-
-/// Where in a call an argument goes.
-enum Target<'a> {
-    Enable,
-    Enabled,
-    Input(&'a Pin),
-    Output(&'a Pin),
 }
 
 impl Checker<'_> {
@@ -190,13 +128,19 @@ impl Checker<'_> {
             })?;
         }
         let (place, ty) = self.place(&call.instance)?;
-        if !is_constant(&place) {
-            let message = "an instance cannot be chosen while the program runs";
-            let problem = Diagnostic::new(Code::NotConstant, call.instance.span, message);
-            self.report.push(problem.hint("its index must be a constant; write a call for each"));
-            return None;
-        }
+        self.check_chosen(&place, call.instance.span)?;
         Some((place, ty))
+    }
+
+    /// Whether it is known which instance is meant; else that is reported.
+    fn check_chosen(&mut self, place: &Place, span: Span) -> Option<()> {
+        if is_constant(place) {
+            return Some(());
+        }
+        let message = "an instance cannot be chosen while the program runs";
+        let problem = Diagnostic::new(Code::NotConstant, span, message);
+        self.report.push(problem.hint("its index must be a constant; write a call for each"));
+        None
     }
 
     /// The block type of that name.
@@ -227,22 +171,6 @@ impl Checker<'_> {
         let declared = self.scope.entry(place.variable).variable.span;
         self.report.push(Diagnostic::new(Code::TypeMismatch, span, message).related(declared, "declared here"));
         None
-    }
-
-    /// The pins of a unit, its references at the end of its inputs.
-    fn pins_of_unit(&self, unit: UnitId) -> Pins {
-        let signature = &self.units[unit.index()];
-        let pins = |ids: &[super::VariableId], takes: Takes| -> Vec<Pin> {
-            let pin = |(place, id): (usize, &super::VariableId)| {
-                let variable = &self.scope.entry(*id).variable;
-                Pin { name: variable.name.clone(), ty: variable.ty, range: None, takes, place }
-            };
-            ids.iter().enumerate().map(pin).collect()
-        };
-        let mut inputs = pins(&signature.inputs, Takes::Value);
-        inputs.extend(pins(&signature.references, Takes::Reference));
-        let (name, outputs) = (self.type_name(Type::Unit(unit)), pins(&signature.outputs, Takes::Value));
-        Pins { name, inputs, outputs, has_result: self.has_result(unit) }
     }
 
     /// What is wrong in the arguments whatever the block.
@@ -291,62 +219,6 @@ impl Checker<'_> {
                 wired.outputs.extend(self.output(&eno, reference).map(|place| (Output::Eno, place)));
             }
             _ => drop(self.written(reference)),
-        }
-    }
-
-    /// The pin that an argument is wired to: without a name the input at its place.
-    fn target<'a>(
-        &mut self,
-        pins: &'a Pins,
-        (place, argument): (usize, &ladder::Argument),
-        seen: &mut Vec<(String, Span)>,
-    ) -> Option<Target<'a>> {
-        let name = &argument.pin.text;
-        let is_output = matches!(argument.wire, ladder::Wire::Output(_));
-        let positional = pins.inputs.get(place).filter(|_| name.is_empty());
-        let (input, output) = (positional.or_else(|| Pins::find(&pins.inputs, name)), pins.output(name));
-        let found = match (is_output, input, output) {
-            (false, Some(pin), _) => Target::Input(pin),
-            (true, _, Some(pin)) => Target::Output(pin),
-            (false, None, None) if name.eq_ignore_ascii_case("EN") => Target::Enable,
-            (true, None, None) if name.eq_ignore_ascii_case("ENO") => Target::Enabled,
-            (_, input, output) => {
-                let (what, all) = if is_output { ("output", &pins.outputs) } else { ("input", &pins.inputs) };
-                let message = if name.is_empty() {
-                    format!("{} has no {} inputs", pins.name, place + 1)
-                } else {
-                    format!("{} has no {what} `{name}`", pins.name)
-                };
-                let hint = match (input, output) {
-                    (Some(_), _) => format!("`{name}` is an input: write `{name} := value`"),
-                    (_, Some(_)) => format!("`{name}` is an output: write `{name} => variable`"),
-                    (None, None) => format!("its {what}s are {}", Pins::list(all.iter())),
-                };
-                self.report.push(Diagnostic::new(Code::UnknownPin, argument.pin.span, message).hint(hint));
-                return None;
-            }
-        };
-        let key = match found {
-            Target::Input(pin) | Target::Output(pin) => ladder::key(&pin.name),
-            Target::Enable | Target::Enabled => ladder::key(name),
-        };
-        if let Some((_, first)) = seen.iter().find(|(other, _)| *other == key) {
-            let problem = Diagnostic::new(Code::DuplicatePin, argument.pin.span, format!("`{name}` is wired twice"));
-            self.report.push(problem.related(*first, "wired first here"));
-        } else {
-            seen.push((key, argument.span));
-        }
-        Some(found)
-    }
-
-    /// Reports what has to be wired and is not.
-    fn check_missing(&mut self, pins: &Pins, seen: &[(String, Span)], call: &BlockCall) {
-        for pin in pins.inputs.iter().filter(|pin| pin.takes != Takes::Value) {
-            if !seen.iter().any(|(name, _)| *name == ladder::key(&pin.name)) {
-                let what = if pin.takes == Takes::Constant { "a constant" } else { "a variable" };
-                let message = format!("`{}` of {} has to be given {what}", pin.name, pins.name);
-                self.report.push(Diagnostic::new(Code::WrongArguments, call.instance.span, message));
-            }
         }
     }
 
@@ -428,6 +300,9 @@ impl Checker<'_> {
             self.report.push(Diagnostic::new(Code::TypeMismatch, value.span, message));
             return None;
         }
+        if self.types.holds_instance(ty) {
+            self.check_chosen(&place, value.span)?;
+        }
         Some(place)
     }
 
@@ -472,25 +347,6 @@ impl Checker<'_> {
                 self.type_name(gives)
             )),
         );
-    }
-
-    fn power_output(&mut self, pins: &Pins, name: &Name) -> Option<Output> {
-        let bools = || Pins::list(pins.outputs.iter().filter(|pin| pin.ty == Type::Elementary(Elementary::Bool)));
-        let problem = match pins.output(&name.text) {
-            Some(pin) if pin.ty == Type::Elementary(Elementary::Bool) => return Some(Output::Pin(pin.place)),
-            None if name.text.eq_ignore_ascii_case("ENO") => return Some(Output::Eno),
-            Some(pin) => {
-                let article = types::with_article(&self.type_name(pin.ty));
-                Diagnostic::new(Code::PowerNotTaken, name.span, format!("`{}` is {article}, not power", name.text))
-                    .hint(format!("power on the right comes from one of {}", bools()))
-            }
-            None => {
-                Diagnostic::new(Code::UnknownPin, name.span, format!("{} has no output `{}`", pins.name, name.text))
-                    .hint(format!("power on the right comes from one of {}", bools()))
-            }
-        };
-        self.report.push(problem);
-        None
     }
 
     /// A reference in words, for messages.

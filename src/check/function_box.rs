@@ -388,7 +388,7 @@ impl Checker<'_> {
             self.report.push(Diagnostic::new(Code::PowerNotTaken, output.span, message));
             return None;
         } else if let Some(target) = target {
-            self.weigh_copy(ty, call.instance.span);
+            self.weigh_copy(ty, [&source, &target], call.instance.span);
             return Some(Boxed::Copy(Box::new(Copied { enable: wired.enable, target, source, enabled })));
         } else {
             ("MOVE of an array or structure needs a place to go to", "wire `OUT`")

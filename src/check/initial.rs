@@ -1,12 +1,12 @@
 //! Initial values: constants for what is elementary, and lists for what has parts. It must never make more values than the type
 //! has elements, whatever a repetition says.
 
-use super::model::{Initial, PinId, Step, Type};
+use super::model::{Initial, PinId, Step, Type, VariableId};
 use super::type_table::single_values;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, ArrayItem, Expression, ExpressionKind, MemberValue};
+use crate::ladder::{self, ArrayItem, Expression, ExpressionKind, MemberValue, VariableClass};
 use crate::source::Span;
 
 impl Checker<'_> {
@@ -129,6 +129,14 @@ impl Checker<'_> {
                 whole = false;
                 continue;
             };
+            if let Step::Variable(variable) = step
+                && !self.may_start_otherwise(variable)
+            {
+                let message = format!("`{}` is not remembered by an instance", member.member.text);
+                let problem = Diagnostic::new(Code::NotWritable, member.member.span, message);
+                self.report.push(problem.hint("only what an instance keeps can start with a value of its own"));
+                whole = false;
+            }
             if found.iter().any(|(other, _)| *other == step) {
                 let message = format!("`{}` is given twice", member.member.text);
                 self.report.push(Diagnostic::new(Code::DuplicateClause, member.member.span, message));
@@ -140,6 +148,12 @@ impl Checker<'_> {
             }
         }
         whole.then_some(found)
+    }
+
+    /// Whether a variable of a function block may start with another value in one instance than its declaration says.
+    fn may_start_otherwise(&self, variable: VariableId) -> bool {
+        let class = self.scope.entry(variable).variable.class;
+        matches!(class, VariableClass::Input | VariableClass::Output | VariableClass::Memory)
     }
 
     /// The member of that name that an initial value can be for.

@@ -442,7 +442,7 @@ pub struct Call {
     /// keeps its last value, and one of a function has its initial value.
     pub inputs: Vec<Input>,
     /// The places that its references stand for, each by its place among the unit's references or, of a standard block, among
-    /// its inputs; all are given.
+    /// its inputs; all are given. Computed indices are in no such place that holds block instances.
     pub references: Vec<(usize, Place)>,
     /// The wired outputs, in the order written: which one, and where to.
     pub outputs: Vec<(Output, Place)>,
@@ -455,7 +455,7 @@ pub struct Call {
 pub enum Callee {
     /// An instance of a standard block. Computed indices are in no such place.
     Standard(StandardBlock, Place),
-    /// An instance of a function block of the program's own.
+    /// An instance of a function block of the program's own. Computed indices are in no such place.
     Unit(UnitId, Place),
     /// A standard function, with the type of its result. Its one output is that.
     Function(Function, Elementary),

@@ -163,13 +163,20 @@ impl Checker<'_> {
         let Some(unit) = self.units.get(node) else { return size };
         let called = |callee: UnitId| sizes[callee.index()].map_or(0, |size| size.code);
         let calls = unit.calls.iter().map(|call| call.times.saturating_mul(called(call.callee)));
-        // A function's variables start afresh at each call.
-        let is_function = matches!(self.program.units[node].kind, UnitKind::Function { .. });
-        let own = unit.weight.saturating_add(if is_function { size.values } else { 0 });
+        // A function's variables start afresh at each call, of another unit the temporary ones.
+        let afresh = if is_function(&self.program.units[node].kind) { size.values } else { self.temporaries(node) };
+        let own = unit.weight.saturating_add(afresh);
         size.code = calls.fold(own, u64::saturating_add);
         let nested = |call: &UnitCall| sizes[call.callee.index()].map_or(0, |size| size.depth + CALL_DEPTH);
         size.depth = unit.depth + unit.calls.iter().map(nested).max().unwrap_or(0);
         size
+    }
+
+    /// How many values a unit sets whenever it starts.
+    fn temporaries(&self, unit: usize) -> u64 {
+        let variables = self.units[unit].variables.clone().map(|id| &self.scope.entry(VariableId(id)).variable);
+        let temporary = variables.filter(|variable| variable.class == VariableClass::Temporary);
+        temporary.map(|variable| self.types.values(variable.ty)).fold(0, u64::saturating_add)
     }
 
     fn size_of_type(&self, ty: Type, of_node: impl Fn(usize) -> Size) -> Size {
@@ -301,6 +308,8 @@ impl Checker<'_> {
         }
         if all > MOST_INLINED {
             let (code, span, what) = largest;
+            // What is drawn does not count, and is part of the code.
+            let code = code.min(all);
             let message = format!("calls and loops written out come to {all} elements, {code} of them by {what}");
             let problem = Diagnostic::new(Code::TooLargeInlined, span, message);
             self.report.push(problem.hint(format!(

@@ -3,12 +3,12 @@
 
 use super::Checker;
 use super::function_box::Boxed;
-use super::model::{Place, Statement, Type};
+use super::model::{Place, Statement, Step, Type};
 use super::network::Walk;
 use super::types;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, CaseLabel, Expression, ExpressionKind, Reference, StatementKind};
+use crate::ladder::{self, CaseLabel, Expression, ExpressionKind, Reference, StatementKind, UnitKind, VariableClass};
 use crate::source::Span;
 
 /// The most turns of one loop.
@@ -72,7 +72,7 @@ impl Checker<'_> {
             }
             Type::Array(_) | Type::Structure(_) if !self.types.holds_instance(ty) => {
                 let source = self.source(value, ty)?;
-                self.weigh_copy(ty, value.span);
+                self.weigh_copy(ty, [&source, &place], value.span);
                 Some(Statement::Copy { target: place, source })
             }
             _ => {
@@ -83,11 +83,22 @@ impl Checker<'_> {
         }
     }
 
-    /// Notes what copying something of a type comes to: all elements of an array are one step, but each member is one.
-    pub(super) fn weigh_copy(&mut self, ty: Type, span: Span) {
+    /// Notes what copying something of a type comes to: where a run of values is copied as a whole it is one step, else each of
+    /// them is one.
+    pub(super) fn weigh_copy(&mut self, ty: Type, places: [&Place; 2], span: Span) {
         let before = self.weight();
-        self.weigh(self.types.runs(ty));
+        let whole = places.iter().all(|place| self.is_whole(place));
+        self.weigh(if whole { self.types.runs(ty) } else { self.types.values(ty) });
         self.note_large(before, span);
+    }
+
+    /// Whether a place is no part of an array, whatever its unit is called with and wherever the unit's instances are.
+    fn is_whole(&self, place: &Place) -> bool {
+        let entry = self.scope.entry(place.variable);
+        let is_of_block =
+            entry.unit.is_some_and(|unit| self.program.units[unit.index()].kind == UnitKind::FunctionBlock);
+        let is_element = place.path.iter().any(|step| matches!(step, Step::Element(_)));
+        !is_of_block && !is_element && entry.variable.class != VariableClass::InOut
     }
 
     /// What a whole array or structure gets: another of its type.

@@ -55,6 +55,8 @@ struct Facts {
     depth: u32,
     /// Its values, those of one member in all elements counted as one.
     runs: u64,
+    /// All of its values.
+    values: u64,
     /// Whether it is a block instance, or holds one.
     holds_instance: bool,
 }
@@ -79,8 +81,8 @@ impl TypeTable {
 
     fn facts(&self, ty: Type) -> Facts {
         match ty {
-            Type::Elementary(_) => Facts { depth: 0, runs: 1, holds_instance: false },
-            Type::Block(_) | Type::Unit(_) => Facts { depth: 0, runs: 1, holds_instance: true },
+            Type::Elementary(_) => Facts { depth: 0, runs: 1, values: 1, holds_instance: false },
+            Type::Block(_) | Type::Unit(_) => Facts { depth: 0, runs: 1, values: 1, holds_instance: true },
             Type::Array(array) => self.array_facts[array.index()],
             Type::Structure(structure) => self.structure_facts[structure.index()],
         }
@@ -94,6 +96,11 @@ impl TypeTable {
     /// How many values a type has, those of one member in all elements of an array counted as one.
     pub(super) fn runs(&self, ty: Type) -> u64 {
         self.facts(ty).runs
+    }
+
+    /// How many values a type has, an instance counted as one.
+    pub(super) fn values(&self, ty: Type) -> u64 {
+        self.facts(ty).values
     }
 
     /// The member of that name of a structure.
@@ -213,7 +220,8 @@ impl Checker<'_> {
         let id = *self.types.ids.entry(array.clone()).or_insert(next);
         if id == next {
             let element = self.types.facts(array.element);
-            self.types.array_facts.push(Facts { depth: element.depth + 1, ..element });
+            let values = element.values.saturating_mul(u64::from(array.count()));
+            self.types.array_facts.push(Facts { depth: element.depth + 1, values, ..element });
             self.types.arrays.push(array);
         }
         id
@@ -375,6 +383,7 @@ impl Checker<'_> {
                     let of_field = self.types.facts(ty);
                     facts.depth = facts.depth.max(of_field.depth + 1);
                     facts.runs = facts.runs.saturating_add(of_field.runs);
+                    facts.values = facts.values.saturating_add(of_field.values);
                     facts.holds_instance |= of_field.holds_instance;
                     places.insert(field.name.key(), fields.len());
                     fields.push(Field { name: field.name.text.clone(), ty, initial });

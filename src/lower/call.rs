@@ -5,7 +5,7 @@
 
 use super::blocks::{self, Run, Wired};
 use super::cell::{Cell, Pick};
-use super::place::{Node, Part};
+use super::place::{Node, Part, Spot};
 use super::storage::{Frame, Storage};
 use super::{Lowering, Running};
 use crate::check::{
@@ -52,40 +52,40 @@ impl<'a> Lowering<'a> {
             Callee::Function(function, ty) => self.function_box(*function, *ty, call, fed),
             Callee::UserFunction(unit) => (self.user_function(*unit, call, fed, enabled), None),
         };
-        let targets: Vec<Part<'a>> = call.outputs.iter().map(|(_, place)| self.part(place)).collect();
+        // An index at an output may call the same function again, which starts its variables afresh.
+        let wired: Vec<Option<ValueId>> =
+            call.outputs.iter().map(|(output, _)| self.output(*output, &outputs)).collect();
+        let power = self.output(call.power_output, &outputs);
+        let targets: Vec<Spot> = call.outputs.iter().map(|(_, place)| self.spot(place)).collect();
         let in_range = self.end(outer);
         let in_range = self.both(enable_in_range, in_range);
         let eno = self.both(enabled, in_range);
         let eno = self.both(eno, divides);
 
-        for ((output, _), target) in call.outputs.iter().zip(targets) {
-            match (output, &outputs) {
-                (Output::Eno, _) => {
+        for (value, target) in wired.into_iter().zip(targets) {
+            match value {
+                Some(value) => self.store(target, value, enabled),
+                None => {
                     let eno = eno.unwrap_or_else(|| self.logic.bool(true));
-                    self.store(target.spot(), eno, None);
+                    self.store(target, eno, None);
                 }
-                (Output::Pin(pin), Outputs::Parts(parts)) => match parts[*pin].value() {
-                    Some(spot) => {
-                        let value = self.load(spot);
-                        self.store(target.spot(), value, enabled);
-                    }
-                    None => self.copy(target, parts[*pin], enabled),
-                },
-                (Output::Pin(_), Outputs::Value(value)) => self.store(target.spot(), *value, enabled),
             }
         }
         let is_function = matches!(call.callee, Callee::Function(..) | Callee::UserFunction(_));
-        let right = match (call.power_output, outputs) {
-            (Output::Eno, _) => eno,
-            (Output::Pin(pin), outputs) => {
-                let value = match outputs {
-                    Outputs::Parts(parts) => self.load(parts[pin].spot()),
-                    Outputs::Value(value) => value,
-                };
-                self.both(Some(value), enabled.filter(|_| is_function))
-            }
+        let right = match power {
+            None => eno,
+            Some(power) => self.both(Some(power), enabled.filter(|_| is_function)),
         };
         Called { right: right.unwrap_or_else(|| self.logic.bool(true)), in_range, enabled }
+    }
+
+    /// What an output holds behind a call; of ENO, `None`.
+    fn output(&mut self, output: Output, outputs: &Outputs<'a>) -> Option<ValueId> {
+        match (output, outputs) {
+            (Output::Eno, _) => None,
+            (Output::Pin(pin), Outputs::Parts(parts)) => Some(self.load(parts[pin].spot())),
+            (Output::Pin(_), Outputs::Value(value)) => Some(*value),
+        }
     }
 
     fn wire(&mut self, wire: &Wire) -> ValueId {
@@ -115,6 +115,7 @@ impl<'a> Lowering<'a> {
             if let Some(cells) = cells.inputs[pin] {
                 let executed = lowering.effective(None);
                 Cell { cells, pick }.store(&mut lowering.logic, executed, value);
+                lowering.forget(cells);
             }
         };
         if let Some((pin, left)) = fed {

@@ -58,6 +58,13 @@ enum GoesOn {
     Value(Option<ValueId>),
 }
 
+impl Guard {
+    /// Whether what is lowered stands in a function whose call may be computed for nothing.
+    pub(super) fn is_in_function(&self) -> bool {
+        self.outside.is_some()
+    }
+}
+
 impl Lowering<'_> {
     /// Starts a program.
     pub(super) fn enter_program(&mut self) {

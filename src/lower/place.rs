@@ -34,7 +34,8 @@ pub(super) enum Node<'a> {
 pub(super) struct Spot {
     pub(super) cell: Cell,
     bit: Option<u8>,
-    local: bool,
+    /// Whether it is a function's own.
+    pub(super) local: bool,
 }
 
 impl<'a> Part<'a> {

@@ -146,7 +146,8 @@ impl Lowering<'_> {
         self.store(spot, held, None);
         let in_range = self.end(outer);
         self.note_failure(in_range, None);
-        if let Some(slot) = spot.slot() {
+        // What a function writes elsewhere is perhaps not written.
+        if let Some(slot) = spot.slot().filter(|_| spot.local || !self.guard.is_in_function()) {
             self.counters.push(Counter { slot, value: Some(value) });
         }
     }

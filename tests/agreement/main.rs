@@ -8,6 +8,7 @@ mod examples;
 mod faults;
 mod guards;
 mod jumps;
+mod nesting;
 mod passes;
 mod one_program;
 mod random;

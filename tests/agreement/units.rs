@@ -390,6 +390,28 @@ rung
 }
 
 #[test]
+fn a_function_gives_its_outputs_though_an_index_at_one_calls_it_again() {
+    follows(
+        "function shift : INT
+input x : INT
+output y : INT
+rung
+  {shift := x}
+rung
+  {y := x + 100}
+program p
+input a : INT
+var cells : array [0..9] of INT
+var result : INT
+rung
+  shift(x := a, y => cells[shift(x := 2)], OUT => result)",
+        "ms a | cells[2] result
+         0  1 | 101      1
+         1  5 | 105      5",
+    );
+}
+
+#[test]
 fn a_block_reads_and_writes_what_a_program_declares_at_an_address() {
     follows(
         "function_block counts

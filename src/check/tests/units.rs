@@ -121,6 +121,17 @@ fn declarations_stand_where_they_mean_something() {
             Code::NotConstant,
             "_i[_n]",
         ),
+        (
+            "function_block f\ninout _t : TON\nprogram p\nvar _i : f var _ts : array [0..3] of TON var _n : INT\nrung _i(_t := _ts[_n])\n",
+            Code::NotConstant,
+            "_ts[_n]",
+        ),
+        ("function_block f\ntemp _a : INT\nprogram p\nvar _i : f := (_a := 3)\nrung _i()\n", Code::NotWritable, "_a"),
+        (
+            "function_block f\nconst _a : INT := 2\nprogram p\nvar _i : f := (_a := 3)\nrung _i()\n",
+            Code::NotWritable,
+            "_a",
+        ),
     ];
     for (text, code, place) in cases {
         let found = found(text);
@@ -131,6 +142,30 @@ fn declarations_stand_where_they_mean_something() {
         "function_block f\ninput a : INT := 3\nvar n : INT retain\ntemp t : INT\nrung {t := a; n := t;}\nprogram p\ntemp t : INT\nrung {t := 1} i:f(a := t)\n",
     );
     clean("program p\nvar _i : array [0..3] of TON\nrung _i[0](PT := T#1s) _i[1](PT := T#2s)\n");
+    clean(
+        "function_block f\ninout t : TON\nrung\n  t(PT := T#1s)\nprogram p\nvar _i : f var _ts : array [0..3] of TON\nrung\n  _i(t := _ts[1])\n",
+    );
+}
+
+#[test]
+fn what_is_copied_or_set_value_by_value_counts_as_often() {
+    let row = "type row : array [0..4000] of INT\n";
+    let copies = |declared: &str, body: &str| {
+        let text =
+            format!("{row}program p\nvar _i : DINT {declared}\nrung\n  {{FOR _i := 1 TO 1000 DO {body}; END_FOR;}}\n");
+        one(&text).0
+    };
+    assert_eq!(copies("var _m : array [0..1] of row", "_m[0] := _m[1]"), Code::TooLargeInlined);
+    assert_eq!(copies("var _m : array [0..1] of row var _r : row", "_r := _m[1]"), Code::TooLargeInlined);
+    assert_eq!(
+        copies("var _m : array [0..1] of row var _r : row", "MOVE(IN := _r, OUT => _m[1])"),
+        Code::TooLargeInlined
+    );
+    clean(&format!(
+        "{row}program p\nvar _i : DINT var _r : row var _s : row\nrung\n  {{FOR _i := 1 TO 1000 DO _r := _s; END_FOR;}}\n"
+    ));
+    let temporary = "type row : array [0..4000] of INT\nfunction_block f\ntemp _t : row\nprogram p\nvar _i : DINT var _f : f\nrung\n  {FOR _i := 1 TO 1000 DO _f(); END_FOR;}\n";
+    assert_eq!(one(temporary).0, Code::TooLargeInlined);
 }
 
 #[test]
