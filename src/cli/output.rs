@@ -85,7 +85,8 @@ impl WholeFile {
                 return Ok(Sink::Device(BufWriter::new(File::options().write(true).open(path)?)));
             }
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let file = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder)?;
+            let made = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder);
+            let file = made.map_err(without_path)?;
             Ok(Sink::Temporary(BufWriter::new(file)))
         };
         let sink = create().map_err(|error| cannot_write(path, &error))?;
@@ -137,6 +138,14 @@ fn permissions(path: &Path) -> std::fs::Permissions {
     #[cfg(not(unix))]
     let usual = tempfile::tempfile().and_then(|file| file.metadata()).expect("a temporary file").permissions();
     path.metadata().map_or(usual, |metadata| metadata.permissions())
+}
+
+/// An error without the name of the temporary file, which whoever asked for a file has never heard of.
+fn without_path(error: io::Error) -> io::Error {
+    match error.get_ref().and_then(|inner| inner.source()).and_then(|source| source.downcast_ref::<io::Error>()) {
+        Some(inner) => inner.raw_os_error().map_or_else(|| inner.kind().into(), io::Error::from_raw_os_error),
+        None => error,
+    }
 }
 
 /// A failure to write a file; that the standard output is closed is none.
