@@ -139,19 +139,19 @@ fn comments_in_odd_places_are_kept_in_order() {
 }
 
 #[test]
-fn comments_between_the_arguments_of_a_statement_print_where_they_stood() {
+fn comments_between_the_arguments_of_a_statement_stay_there() {
     let text = "\
 program p
 
 rung r1
-  { -- before it
-    t1(  -- a timer
+  { t1(
       IN := a,  -- beside IN
       -- before PT
       PT := T#2s
       -- the last of all
-    );  -- behind it
-    t1(IN := a, PT := T#2s);
+    );
+    -- before the next
+    t1(IN := a, PT := T#2s);  -- behind it
   }
 ";
     assert_eq!(print_and_check(&parse_well(text)), text);

@@ -283,11 +283,12 @@ impl Reader<'_> {
         Ok(StatementKind::Call(BlockCall { instance, type_name: None, arguments, power_output: None }))
     }
 
-    /// A call as an operand. NOT(a) is an operator, although it looks like a call.
+    /// A call as an operand. NOT(a) is an operator, although it looks like a call; in back quotes it is one.
     fn value_of_call(&mut self, function: Name, arguments: Arguments, start: u32) -> Tree {
         let mut values: Vec<FunctionArgument> = arguments.list.into_iter().filter_map(function_argument).collect();
+        let is_operator = function.key() == "not" && !self.source.slice(function.span).starts_with('`');
         let kind = match values.pop() {
-            Some(FunctionArgument { parameter: None, value }) if values.is_empty() && function.key() == "not" => {
+            Some(FunctionArgument { parameter: None, value }) if values.is_empty() && is_operator => {
                 ExpressionKind::Unary(UnaryOperator::Not, Box::new(value))
             }
             last => {
