@@ -142,8 +142,9 @@ fn permissions(path: &Path) -> std::fs::Permissions {
 
 /// An error without the name of the temporary file, which whoever asked for a file has never heard of.
 fn without_path(error: io::Error) -> io::Error {
-    match error.get_ref().and_then(|inner| inner.source()).and_then(|source| source.downcast_ref::<io::Error>()) {
-        Some(inner) => inner.raw_os_error().map_or_else(|| inner.kind().into(), io::Error::from_raw_os_error),
+    // `tempfile` gives the system's error behind its own only as text.
+    match error.to_string().split_once(" at path ") {
+        Some((what, _)) => io::Error::new(error.kind(), what),
         None => error,
     }
 }
