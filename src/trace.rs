@@ -82,23 +82,29 @@ impl Signal {
         layout.observed().iter().map(signal).collect()
     }
 
-    /// The named ones, in the order named. The name of a block instance stands for all of its members.
+    /// The named ones, in the order named. The name of a program, a block instance, an array or a structure stands for
+    /// all that is in it.
     ///
     /// # Errors
     /// The first name that there is not.
     pub fn select(layout: &Layout, names: &[String]) -> Result<Vec<Self>, String> {
         let all = Self::all(layout);
-        let mut by_name: HashMap<String, Vec<usize>> = HashMap::new();
+        let mut wanted: HashMap<String, Vec<usize>> =
+            names.iter().map(|name| (name.to_lowercase(), Vec::new())).collect();
         for (index, signal) in all.iter().enumerate() {
-            by_name.entry(signal.name.to_lowercase()).or_default().push(index);
-            if let (Some(instance), _) = signal.parts() {
-                by_name.entry(instance.to_lowercase()).or_default().push(index);
+            let name = signal.name.to_lowercase();
+            let parts = if name.starts_with('%') { "" } else { &name };
+            let wholes = parts.match_indices(['.', '[']).map(|(end, _)| &name[..end]);
+            for whole in wholes.chain([name.as_str()]) {
+                if let Some(found) = wanted.get_mut(whole) {
+                    found.push(index);
+                }
             }
         }
         let mut seen = HashSet::new();
         let mut selected = Vec::new();
         for name in names {
-            let found = by_name.get(&name.to_lowercase()).ok_or(name)?;
+            let found = wanted.get(&name.to_lowercase()).filter(|found| !found.is_empty()).ok_or(name)?;
             selected.extend(found.iter().filter(|index| seen.insert(**index)).map(|index| all[*index].clone()));
         }
         Ok(selected)

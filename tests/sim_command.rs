@@ -203,6 +203,7 @@ fn a_replay_is_run_and_one_of_another_program_refused() {
     let map = folder.stdout("build lamp.rung --map -");
     let (_, hash) = map.split_once("\"layout\": \"").expect("the hash in the map");
     let hash = &hash[..16];
+    let source_hash = rung::replay::source_hash(&rung::source::Source::new("lamp.rung", PROGRAM));
     let replay = |hash: &str| {
         let order = if cfg!(target_endian = "little") { "little" } else { "big" };
         let scans: Vec<String> = [(0, "00"), (5, "01"), (30, "01"), (31, "00")]
@@ -210,7 +211,7 @@ fn a_replay_is_run_and_one_of_another_program_refused() {
             .map(|(ms, inputs)| format!("{{\"now\": {}, \"inputs\": \"{inputs}\"}}", ms * 1_000_000))
             .collect();
         format!(
-            "{{\"format\": \"rung-replay-1\", \"program\": \"lamp.rung\", \"source_hash\": \"0000000000000000\", \
+            "{{\"format\": \"rung-replay-1\", \"program\": \"lamp.rung\", \"source_hash\": \"{source_hash:016x}\", \
              \"layout_hash\": \"{hash}\", \"byte_order\": \"{order}\", \"start_image\": null, \"scans\": [{}]}}",
             scans.join(", ")
         )
@@ -223,9 +224,23 @@ fn a_replay_is_run_and_one_of_another_program_refused() {
     }
     assert_eq!(folder.stdout("sim lamp.rung --replay replay.json --trace a.svg"), "");
 
+    // A comment changes the text, not what the replay runs over; that is told and no more.
+    folder.write("lamp.rung", &format!("{PROGRAM}\n-- changed\n"));
+    let output = folder.rung(["sim", "lamp.rung", "--replay", "replay.json"]);
+    assert_eq!(text(&output.stdout), expected);
+    let told = "note: the program's text has changed since replay.json was recorded from lamp.rung\n";
+    assert_eq!(text(&output.stderr), told);
+
     folder.write("other.json", &replay("0123456789abcdef"));
     assert!(folder.stderr("sim lamp.rung --replay other.json").contains("error[R0703]"));
     assert!(folder.stderr("sim lamp.rung --replay lamp.csv").contains("error[R0703]"));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_called_as_it_was_asked_for() {
+    let said = Folder::new().stderr("sim lamp.rung --trace nowhere/trace.csv");
+    assert!(said.contains("nowhere/trace.csv cannot be written"), "{said}");
+    assert!(!said.contains(".tmp"), "{said}");
 }
 
 #[test]

@@ -32,12 +32,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             loaded.diagnostics.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count()
         };
         print(&format!(
-            "{}: {} rungs, {} errors, {} warnings\n",
+            "{}: {}, {}, {}\n",
             loaded.source.name(),
-            loaded.program.rungs().count(),
-            count(Severity::Error),
-            count(Severity::Warning)
+            counted(loaded.program.rungs().count(), "rung"),
+            counted(count(Severity::Error), "error"),
+            counted(count(Severity::Warning), "warning")
         ))?;
     }
     if failed { Err(Failure::Said) } else { Ok(()) }
+}
+
+/// `1 rung`, `2 rungs`
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -85,7 +85,8 @@ impl WholeFile {
                 return Ok(Sink::Device(BufWriter::new(File::options().write(true).open(path)?)));
             }
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let file = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder)?;
+            let made = tempfile::Builder::new().permissions(permissions(path)).tempfile_in(folder);
+            let file = made.map_err(without_path)?;
             Ok(Sink::Temporary(BufWriter::new(file)))
         };
         let sink = create().map_err(|error| cannot_write(path, &error))?;
@@ -137,6 +138,15 @@ fn permissions(path: &Path) -> std::fs::Permissions {
     #[cfg(not(unix))]
     let usual = tempfile::tempfile().and_then(|file| file.metadata()).expect("a temporary file").permissions();
     path.metadata().map_or(usual, |metadata| metadata.permissions())
+}
+
+/// An error without the name of the temporary file, which whoever asked for a file has never heard of.
+fn without_path(error: io::Error) -> io::Error {
+    // `tempfile` gives the system's error behind its own only as text.
+    match error.to_string().split_once(" at path ") {
+        Some((what, _)) => io::Error::new(error.kind(), what),
+        None => error,
+    }
 }
 
 /// A failure to write a file; that the standard output is closed is none.

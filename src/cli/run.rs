@@ -94,7 +94,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let asked = Arc::clone(&stop);
     ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::new(Code::CannotStart, format!("Ctrl-C cannot be caught: {error}")))?;
-    let live = !arguments.plain && std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+    let terminal = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+    let live = !arguments.plain && terminal && !view::in_background();
     let told = if live { Vec::new() } else { points.told() };
     let machine = Machine::start(engine, &program.layout, &inputs, timing, &told, stop)
         .map_err(|error| Failure::new(Code::CannotStart, error.to_string()))?;

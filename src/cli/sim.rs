@@ -18,8 +18,9 @@ use crate::engine::jit::Jit;
 use crate::logic::{Layout, Program};
 use crate::lower::lower;
 use crate::opt::optimise;
-use crate::replay::Replay;
+use crate::replay::{Replay, source_hash};
 use crate::simulate::{Schedule, Simulation, Stimuli};
+use crate::source::Source;
 use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
 
 /// Runs a program in virtual time and writes what its variables did
@@ -50,7 +51,7 @@ pub(super) struct Arguments {
     /// (`-`, which is the default)
     #[arg(long, value_name = "FILE")]
     trace: Vec<PathBuf>,
-    /// Trace these variables only; a block instance stands for all of its outputs
+    /// Trace these variables only; a program, instance, array or structure stands for all in it
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     signals: Option<Vec<String>>,
     /// Run the scans of a replay file, which `rung run --engine both` leaves at a difference
@@ -78,7 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(names) => Signal::select(&program.layout, names)
             .map_err(|name| Failure::new(Code::UndeclaredName, format!("there is no variable `{name}` to trace")))?,
     };
-    let course = Course::read(arguments, &program)?;
+    let course = Course::read(arguments, &loaded.source, &program)?;
     // Made before the outputs, so that what cannot be compiled leaves nothing.
     let mut engines = Engines::new(arguments.engine, &program)?;
     let paths = trace_paths(&arguments.trace)?;
@@ -200,12 +201,17 @@ enum Course {
 }
 
 impl Course {
-    fn read(arguments: &Arguments, program: &Program) -> Result<Self, Failure> {
+    fn read(arguments: &Arguments, drawn: &Source, program: &Program) -> Result<Self, Failure> {
         let layout = &program.layout;
         if let Some(path) = &arguments.replay {
             let source = read_source(path)?;
             let replay = Replay::parse(&source).and_then(|replay| replay.check(layout).map(|()| replay));
-            return replay.map(Self::Replayed).map_err(|problem| Failure::diagnostics(&source, &[problem]));
+            let replay = replay.map_err(|problem| Failure::diagnostics(&source, &[problem]))?;
+            if replay.source_hash != source_hash(drawn) {
+                let (path, recorded) = (path.display(), &replay.program);
+                report(&format!("note: the program's text has changed since {path} was recorded from {recorded}\n"));
+            }
+            return Ok(Self::Replayed(replay));
         }
         let stimuli = match &arguments.stimuli {
             None => Stimuli::default(),

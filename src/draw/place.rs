@@ -216,7 +216,10 @@ impl Placer {
         let (columns, rows) = (block.box_columns, block.rows());
         let centre = 2 * x + columns;
         self.shapes.push(Shape::Frame { x, y: y - 2, columns, rows: rows + 3 });
-        self.text(centre, y - 3, block.instance, Align::Middle, Role::Instance);
+        // A function has none, nor a row for it.
+        if !block.instance.is_empty() {
+            self.text(centre, y - 3, block.instance, Align::Middle, Role::Instance);
+        }
         self.text(centre, y - 1, block.type_name, Align::Middle, Role::Type);
         for (row, pin) in block.left.into_iter().enumerate() {
             self.text(2 * (x + 1), y + row, pin.name, Align::Left, Role::Pin);

@@ -3,13 +3,15 @@
 //! Sizes are in grid columns (one terminal column) and grid rows (one line). A symbol must know nothing of the
 //! place where it will stand.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use super::label;
+use crate::elementary::Elementary;
 use crate::ladder::functions::Function;
-use crate::ladder::library::StandardBlock;
+use crate::ladder::library::{Pin, StandardBlock};
 use crate::ladder::{
-    BlockCall, CoilKind, ContactKind, Expression, Program, Reference, Root, Step, Unit, UnitKind, Variable, Wire,
+    BlockCall, CoilKind, ContactKind, Expression, Program, Reference, Root, Step, Unit, UnitKind, Variable,
+    VariableClass, Wire, key,
 };
 
 /// The columns of the frame of a contact or coil: its two sides and the mark between.
@@ -167,11 +169,8 @@ impl Symbol {
     ) -> Self {
         let function = types.function(call);
         let type_name = function.or_else(|| types.type_of(call));
-        let powered = match function {
-            Some(_) => Powered::Function,
-            None => type_name.and_then(StandardBlock::from_name).map_or(Powered::Unknown, Powered::Block),
-        };
-        let (left, right) = pins(call, powered, circuit_labels, limits);
+        let signature = type_name.and_then(|name| types.signature(name, function.is_some()));
+        let (left, right) = pins(call, signature, circuit_labels, limits);
         let instance = match function {
             Some(_) => String::new(),
             None => label::reference(&call.instance, limits.block),
@@ -195,7 +194,8 @@ impl Symbol {
         let block = BlockBox { instance, type_name, left, right, left_columns, box_columns };
         Self {
             columns: left_columns + box_columns + right_columns,
-            above: 3,
+            // The row of the instance's name, the frame and the type.
+            above: if block.instance.is_empty() { 2 } else { 3 },
             below: block.rows(),
             kind: SymbolKind::Block(block),
             is_output: false,
@@ -212,8 +212,8 @@ pub(super) fn node_text(name: &str, limits: Limits) -> String {
 pub(super) struct InstanceTypes<'a> {
     /// The types of what is declared.
     types: HashMap<String, Option<&'a str>>,
-    /// The functions of the program.
-    functions: HashSet<String>,
+    /// The function blocks and functions of the program.
+    units: HashMap<String, &'a Unit>,
 }
 
 impl<'a> InstanceTypes<'a> {
@@ -221,10 +221,24 @@ impl<'a> InstanceTypes<'a> {
     pub(super) fn of(program: &'a Program, unit: &'a Unit) -> Self {
         let typed =
             |variable: &'a Variable| (variable.name.key(), variable.ty.as_ref().map(|ty| ty.name.text.as_str()));
-        let is_function = |unit: &&Unit| matches!(unit.kind, UnitKind::Function { .. });
+        let is_called = |unit: &&Unit| !matches!(unit.kind, UnitKind::Program { .. });
         Self {
             types: program.globals.iter().chain(&unit.variables).map(typed).collect(),
-            functions: program.units.iter().filter(is_function).map(|unit| unit.name.key()).collect(),
+            units: program.units.iter().filter(is_called).map(|unit| (unit.name.key(), unit)).collect(),
+        }
+    }
+
+    fn is_function(&self, key: &str) -> bool {
+        self.units.get(key).is_some_and(|unit| matches!(unit.kind, UnitKind::Function { .. }))
+    }
+
+    /// What is known of the pins of a function, or of a block of that type. The program's own come first, as nothing of
+    /// theirs is known from elsewhere.
+    fn signature(&self, name: &str, is_function: bool) -> Option<Signature<'a>> {
+        match self.units.get(&key(name)) {
+            Some(unit) => Some(Signature::of_unit(unit)),
+            None if is_function => Some(Signature { is_function, inputs: Vec::new(), outputs: Vec::new() }),
+            None => StandardBlock::from_name(name).map(Signature::of_block),
         }
     }
 
@@ -244,27 +258,67 @@ impl<'a> InstanceTypes<'a> {
     fn function(&self, call: &'a BlockCall) -> Option<&'a str> {
         let name = call.instance.as_name().filter(|_| call.type_name.is_none())?;
         let key = name.key();
-        let known = self.functions.contains(&key) || Function::from_name(&name.text).is_some();
+        let known = self.is_function(&key) || Function::from_name(&name.text).is_some();
         (known && !self.types.contains_key(&key)).then_some(name.text.as_str())
     }
 }
 
+/// The most pins of a unit that are shown though nothing is wired to them.
+const MOST_PINS: usize = 64;
+
 /// What is known of the pins of a box.
-#[derive(Clone, Copy)]
-enum Powered {
+struct Signature<'a> {
     /// Power goes through a function from EN to ENO.
-    Function,
-    /// A block says itself where power goes.
-    Block(StandardBlock),
-    /// Nothing.
-    Unknown,
+    is_function: bool,
+    inputs: Vec<KnownPin<'a>>,
+    outputs: Vec<KnownPin<'a>>,
+}
+
+struct KnownPin<'a> {
+    name: &'a str,
+    /// Power may flow through it.
+    is_bool: bool,
+}
+
+impl<'a> Signature<'a> {
+    fn of_block(block: StandardBlock) -> Self {
+        let known = |pin: &'static Pin| KnownPin { name: pin.name, is_bool: pin.ty == Elementary::Bool };
+        Self {
+            is_function: false,
+            inputs: block.inputs().iter().map(known).collect(),
+            outputs: block.outputs().iter().map(known).collect(),
+        }
+    }
+
+    fn of_unit(unit: &'a Unit) -> Self {
+        let pins = |wanted: fn(VariableClass) -> bool| {
+            let declared = unit.variables.iter().filter(move |variable| wanted(variable.class));
+            declared.take(MOST_PINS).map(|variable| {
+                let is_bool = variable
+                    .ty
+                    .as_ref()
+                    .is_none_or(|ty| ty.dimensions.is_empty() && ty.name.text.eq_ignore_ascii_case("BOOL"));
+                // The caller's own variable carries no power.
+                KnownPin { name: &variable.name.text, is_bool: is_bool && variable.class != VariableClass::InOut }
+            })
+        };
+        let result = match &unit.kind {
+            UnitKind::Function { result: Some(_) } => Some(KnownPin { name: "OUT", is_bool: false }),
+            _ => None,
+        };
+        Self {
+            is_function: matches!(unit.kind, UnitKind::Function { .. }),
+            inputs: pins(|class| matches!(class, VariableClass::Input | VariableClass::InOut)).collect(),
+            outputs: result.into_iter().chain(pins(|class| class == VariableClass::Output)).collect(),
+        }
+    }
 }
 
 /// The pins of both sides, those that power flows through first, then the block's own in their order, wired or
 /// not, then what else the call names.
 fn pins(
     call: &BlockCall,
-    powered: Powered,
+    signature: Option<Signature<'_>>,
     circuit_labels: Vec<String>,
     limits: Limits,
 ) -> (Vec<PinLabel>, Vec<PinLabel>) {
@@ -288,40 +342,32 @@ fn pins(
         let found = wired.iter().position(|(pin, _)| pin.eq_ignore_ascii_case(name));
         found.map_or_else(String::new, |at| wired.remove(at).1)
     };
-    let is_bool = |pin: &&crate::ladder::library::Pin| pin.ty == crate::elementary::Elementary::Bool;
+    let known = signature.is_some();
+    let Signature { is_function, inputs: known_inputs, outputs: known_outputs } =
+        signature.unwrap_or(Signature { is_function: false, inputs: Vec::new(), outputs: Vec::new() });
+    let first_bool = |pins: &[KnownPin<'_>]| pins.iter().position(|pin| pin.is_bool && !is_function);
 
-    let block = match powered {
-        Powered::Block(block) => Some(block),
-        Powered::Function | Powered::Unknown => None,
+    let power_in = match first_bool(&known_inputs).map(|first| known_inputs[first].name) {
+        Some(first) if !is_wired(&inputs, first) => first,
+        _ if known => "EN",
+        _ => "",
     };
-    let power_in = match powered {
-        Powered::Unknown => None,
-        Powered::Function => Some("EN"),
-        Powered::Block(block) => Some(match block.inputs().iter().find(is_bool) {
-            Some(first) if !is_wired(&inputs, first.name) => first.name,
-            _ => "EN",
-        }),
-    };
-    let mut left = vec![pin(power_in.unwrap_or(""), String::new())];
-    for input in block.map_or(&[][..], StandardBlock::inputs) {
-        if Some(input.name) != power_in {
-            left.push(pin(input.name, take(&mut inputs, input.name)));
-        }
+    let mut left = vec![pin(power_in, String::new())];
+    for input in known_inputs.iter().filter(|input| input.name != power_in) {
+        left.push(pin(input.name, take(&mut inputs, input.name)));
     }
     left.extend(inputs.into_iter().map(|(name, wired)| pin(name, wired)));
 
     let chosen = call.power_output.as_ref().map(|name| name.text.as_str());
-    let power_out = chosen.or(match powered {
-        Powered::Unknown => None,
-        Powered::Function => Some("ENO"),
-        Powered::Block(block) => Some(block.outputs().iter().find(is_bool).map_or("ENO", |first| first.name)),
-    });
-    let mut right = vec![pin(power_out.unwrap_or(""), String::new())];
-    for output in block.map_or(&[][..], StandardBlock::outputs) {
-        let carries_power = power_out.is_some_and(|power| power.eq_ignore_ascii_case(output.name));
-        if !carries_power {
-            right.push(pin(output.name, take(&mut outputs, output.name)));
-        }
+    let own = match first_bool(&known_outputs).map(|first| known_outputs[first].name) {
+        Some(first) => first,
+        None if known => "ENO",
+        None => "",
+    };
+    let power_out = chosen.unwrap_or(own);
+    let mut right = vec![pin(power_out, String::new())];
+    for output in known_outputs.iter().filter(|output| !output.name.eq_ignore_ascii_case(power_out)) {
+        right.push(pin(output.name, take(&mut outputs, output.name)));
     }
     // An output that is wired and carries the power as well comes here, a second time.
     right.extend(outputs.into_iter().map(|(name, wired)| pin(name, wired)));

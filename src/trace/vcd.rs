@@ -1,6 +1,7 @@
 //! A trace as waves: a value change dump (IEEE 1364), which every wave viewer reads.
 //!
-//! One module holds the program, and a scope in it each block instance. BOOLs are wires; bit strings and unsigned
+//! One module holds the program, and scopes in it, one in the other, what stands for several: programs, block
+//! instances, structures. BOOLs are wires; bit strings and unsigned
 //! integers are wires as wide as their type; signed integers are `integer`s in two's complement; REAL and LREAL
 //! are reals, and so is TIME, in milliseconds, which viewers can draw as a curve. Only changes are written.
 
@@ -46,17 +47,18 @@ impl<W: Write> VcdTrace<W> {
         out.timescale(1, TimescaleUnit::NS)?;
         out.add_module(&identifier(program))?;
         let mut waves = Vec::with_capacity(signals.len());
-        let mut open: Option<String> = None;
+        let mut open: Vec<String> = Vec::new();
         for signal in signals {
-            let (instance, member) = signal.parts();
-            if open.as_deref() != instance {
-                if open.is_some() {
-                    out.upscope()?;
-                }
-                if let Some(instance) = instance {
-                    out.add_module(&identifier(instance))?;
-                }
-                open = instance.map(str::to_owned);
+            let (owner, member) = signal.parts();
+            let path: Vec<&str> = owner.into_iter().flat_map(|owner| owner.split('.')).collect();
+            let common = open.iter().zip(&path).take_while(|(open, scope)| open == *scope).count();
+            for _ in common..open.len() {
+                out.upscope()?;
+            }
+            open.truncate(common);
+            for scope in &path[common..] {
+                out.add_module(&identifier(scope))?;
+                open.push((*scope).to_owned());
             }
             let (kind, width) = match signal.ty() {
                 Elementary::Real | Elementary::Lreal | Elementary::Time => (VarType::Real, 64),
@@ -66,10 +68,10 @@ impl<W: Write> VcdTrace<W> {
             let id = out.add_var(kind, width, &identifier(member), None)?;
             waves.push(Wave { signal, id, last: None });
         }
-        if open.is_some() {
+        // What is still open, and the program.
+        for _ in 0..=open.len() {
             out.upscope()?;
         }
-        out.upscope()?;
         out.enddefinitions()?;
         Ok(Self { waves, out, last_time: None, last_written: None })
     }

@@ -338,10 +338,15 @@ input start : BOOL at %IX0.0
 var timers : array [1..3] of TON := [3()]
 rung boxes
   start timers[i + 1](PT := T#5s) ADD(EN := start, IN1 := total, IN2 := 5, OUT => rows[total, 0]) SCALE(x := 3).ENO (done[2])
+  start own:latch(reset := [done[1]], count := total) (done[3]) own()
 rung text
   start {IF total > limit AND start AND NOT done[1] AND timers[2].Q AND timers[3].Q OR another_name_that_is_long THEN
     total := total + 1; t1(IN := TRUE, 5, Q => done[3]); ELSE RETURN; END_IF;
     CASE total OF 1, 3..5: total := 0; END_CASE; FOR n := 0 TO 9 BY 3 DO rows[n, 0] := n; END_FOR;}
+function_block latch
+input set, reset output q, level : INT inout count : DINT var e : BOOL
+rung
+  [set | q] /reset (q)
 function scale : REAL
 input x : INT
 rung

@@ -137,3 +137,22 @@ fn comments_in_odd_places_are_kept_in_order() {
         print_and_check(&parse_well(text));
     }
 }
+
+#[test]
+fn comments_between_the_arguments_of_a_statement_stay_there() {
+    let text = "\
+program p
+
+rung r1
+  { t1(
+      IN := a,  -- beside IN
+      -- before PT
+      PT := T#2s
+      -- the last of all
+    );
+    -- before the next
+    t1(IN := a, PT := T#2s);  -- behind it
+  }
+";
+    assert_eq!(print_and_check(&parse_well(text)), text);
+}

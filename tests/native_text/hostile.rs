@@ -4,8 +4,11 @@ use proptest::prelude::*;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rung::diagnostic::Code;
+use rung::engine::{interp::Interpreter, jit::Jit};
 use rung::frontend::native::{self, MAXIMUM_DEPTH};
 use rung::source::Source;
+use rung::{check, draw, ladder, lower, opt};
+use rung_runtime::Scan;
 
 use super::{parse, parse_well, print_and_check};
 
@@ -21,10 +24,39 @@ fn fuzz(bytes: &[u8]) {
     }
     // A program with errors prints somehow too.
     let text = native::print(&parsed.program);
+    draw::text(&parsed.program, &draw::TextOptions::default());
     if parsed.diagnostics.is_empty() {
         print_and_check(&parsed.program);
+        run(&source, &parsed.program);
     } else {
         native::parse(&Source::new("fuzz.rung", text));
+    }
+}
+
+/// A program that checks leaves the same image in the interpreter and compiled, whatever its inputs.
+fn run(source: &Source, program: &ladder::Program) {
+    let (Some(checked), _) = check::check(program) else { return };
+    let Ok(lowered) = lower::lower(&checked, source, None) else { return };
+    if lowered.layout.size() > 1 << 16 {
+        return;
+    }
+    let mut interpreter = Interpreter::new(&lowered);
+    let optimised = opt::optimise(lowered);
+    let mut compiled = Jit::compile(&optimised).expect("what checks compiles");
+    let layout = &optimised.layout;
+    let (mut left, mut right) = (layout.initial_image(), layout.initial_image());
+    let mut random = Pcg64Mcg::seed_from_u64(4);
+    for scan in 0..5 {
+        for run in layout.inputs() {
+            let bytes = run.bytes.start as usize..run.bytes.end as usize;
+            random.fill_bytes(&mut left[bytes.clone()]);
+            left[run.bools.start as usize..run.bools.end as usize].iter_mut().for_each(|bool| *bool &= 1);
+            right[bytes.clone()].copy_from_slice(&left[bytes]);
+        }
+        let now = scan * 70_000_000;
+        interpreter.scan(&mut left, now);
+        compiled.scan(&mut right, now);
+        assert!(left == right, "the engines differ in scan {scan} of\n{}", source.text());
     }
 }
 
@@ -134,6 +166,53 @@ const TOKENS: &[&str] = &[
 ];
 
 const EXAMPLE: &str = include_str!("example.rung");
+
+/// A sound program with all that a mutation may meet: units, tasks, arrays, structures, statements and registers.
+const PLANT: &str = include_str!("plant.rung");
+
+/// A word, a number or one sign of a text, with its place.
+fn words(text: &str) -> Vec<&str> {
+    let mut words: Vec<&str> = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
+        let end = if part_of_word(first) { rest.find(|c| !part_of_word(c)) } else { Some(first.len_utf8()) };
+        let (word, behind) = rest.split_at(end.unwrap_or(rest.len()));
+        words.push(word);
+        rest = behind;
+    }
+    words
+}
+
+#[test]
+fn a_plant_with_words_exchanged_runs_alike_on_all_engines_if_it_checks() {
+    let budget: u64 = std::env::var("RUNG_MUTATIONS").ok().and_then(|text| text.parse().ok()).unwrap_or(400);
+    fuzz(PLANT.as_bytes());
+    let sound = check::check(&parse_well(PLANT)).0;
+    assert!(sound.is_some(), "the plant itself checks");
+    let pool = words(PLANT);
+    for seed in 0..budget {
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let mut mutated = pool.clone();
+        for _ in 0..random.random_range(1..4) {
+            let at = random.random_range(0..mutated.len());
+            match random.random_range(0..8) {
+                0 => drop(mutated.remove(at)),
+                1 => mutated.insert(at, pool[random.random_range(0..pool.len())]),
+                2 => mutated[at] = TOKENS[random.random_range(0..TOKENS.len())],
+                // Of words only, so that more of what comes out still is a program.
+                _ => {
+                    let is_word = |word: &str| word.chars().all(char::is_alphanumeric);
+                    let other = pool[random.random_range(0..pool.len())];
+                    if is_word(mutated[at]) && is_word(other) {
+                        mutated[at] = other;
+                    }
+                }
+            }
+        }
+        fuzz(mutated.concat().as_bytes());
+    }
+}
 
 #[test]
 fn random_bytes_do_no_harm() {

@@ -201,3 +201,9 @@ rung
 ",
     );
 }
+
+#[test]
+fn a_function_named_like_an_operator_stays_a_call_in_back_quotes() {
+    let text = "program p\n\nrung r1\n  {`NOT`(NOT a)} {NOT (a AND b)} (q)\n";
+    assert_eq!(print_and_check(&parse_well(text)), text);
+}

@@ -56,6 +56,23 @@ pub(super) fn watch<E: Scan + Send + 'static>(
     Ok(())
 }
 
+/// Whether another program has the terminal, as behind `rung run … &`: the system stops whoever changes it then.
+pub(super) fn in_background() -> bool {
+    // Where it cannot be told, the terminal is taken to be ours.
+    std::fs::read_to_string("/proc/self/stat").is_ok_and(|stat| stands_behind(&stat))
+}
+
+/// Whether a line of `/proc/PID/stat` is that of a process whose group is not the terminal's.
+fn stands_behind(stat: &str) -> bool {
+    // Behind the command's name, which may hold anything: state, parent, group, session, terminal, its group.
+    let fields = stat.rsplit_once(')').map_or("", |(_, fields)| fields);
+    let number = |place: usize| fields.split_whitespace().nth(place).and_then(|field| field.parse::<i32>().ok());
+    match (number(2), number(5)) {
+        (Some(group), Some(of_terminal)) => of_terminal > 0 && of_terminal != group,
+        _ => false,
+    }
+}
+
 /// What the terminal sent.
 #[derive(Debug)]
 enum Press {
@@ -217,5 +234,13 @@ mod tests {
             Value::real(Elementary::Real, 1.5).map(|value| stepped(value, 1)),
             Value::real(Elementary::Real, 2.5)
         );
+    }
+
+    #[test]
+    fn a_job_in_the_background_is_told_by_the_group_that_has_the_terminal() {
+        assert!(stands_behind("4242 (a) 1 (b) S 1 4242 4000 34816 4100 4194304"));
+        assert!(!stands_behind("4242 (rung) S 1 4242 4000 34816 4242 4194304"));
+        assert!(!stands_behind("4242 (rung) S 1 4242 4000 0 -1 4194304"));
+        assert!(!stands_behind(""));
     }
 }

@@ -18,13 +18,17 @@ pub(super) fn print(page: &mut Page<'_>, statements: &[Statement], end: u32, ind
 }
 
 fn print_statement(page: &mut Page<'_>, statement: &Statement, indent: usize) {
+    let closing = statement.span.end.saturating_sub(1);
     if let Some(word) = words::simple_statement(statement) {
+        // A comment between the arguments needs a line there to end.
+        let commented = |call: &BlockCall| !call.arguments.is_empty() && page.has_comment_before(closing);
         return match &statement.kind {
-            StatementKind::Call(call) if indent + word.width() > LINE_WIDTH => print_call(page, call, indent),
+            StatementKind::Call(call) if indent + word.width() > LINE_WIDTH || commented(call) => {
+                print_call(page, call, closing, indent);
+            }
             _ => page.push(&word),
         };
     }
-    let closing = statement.span.end.saturating_sub(1);
     let end = match &statement.kind {
         StatementKind::If { branches, otherwise } => {
             let bodies = branches.iter().map(|branch| branch.body.as_slice());
@@ -97,15 +101,17 @@ fn start(branch: &CaseBranch) -> u32 {
 ///   PT := b
 /// );
 /// ```
-fn print_call(page: &mut Page<'_>, call: &BlockCall, indent: usize) {
+fn print_call(page: &mut Page<'_>, call: &BlockCall, end: u32, indent: usize) {
     page.push(&words::statement_head(call));
     for (index, argument) in call.arguments.iter().enumerate() {
+        page.flush(argument.span.start, deeper(indent));
         page.line(deeper(indent));
         page.push(&words::argument(argument));
         if index + 1 < call.arguments.len() {
             page.push(",");
         }
     }
+    page.flush(end, deeper(indent));
     page.line(indent);
     page.push(&words::block_tail(call));
     page.push(";");
