@@ -116,6 +116,9 @@ impl Checker<'_> {
         {
             return None;
         }
+        if let Callee::Standard(block, instance) = &callee {
+            self.check_same_constants(*block, instance, &inputs, span);
+        }
         let call = Call { callee, enable, power_input, inputs, references, outputs, power_output };
         Some(Boxed::Call(Box::new(call)))
     }
@@ -124,7 +127,10 @@ impl Checker<'_> {
     fn instance(&mut self, call: &BlockCall) -> Option<(Place, Type)> {
         if let Some(name) = call.instance.as_name() {
             self.lookup(name, || {
-                Some(format!("declare the instance by its use, as in `{}:TON(PT := T#1s)`", name.text))
+                Some(match StandardBlock::from_name(&name.text) {
+                    Some(block) => format!("write the instance before the type, as in `name:{}(…)`", block.name()),
+                    None => format!("declare the instance by its use, as in `{}:TON(PT := T#1s)`", name.text),
+                })
             })?;
         }
         let (place, ty) = self.place(&call.instance)?;

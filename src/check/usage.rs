@@ -2,12 +2,16 @@
 //! called twice. Rungs that do not run count for the first only. It must never depend on the order of a hash map, so
 //! that of too many findings the same ones are kept in every run.
 
+use std::collections::HashMap;
+
 use super::Checker;
-use super::model::{Place, VariableId};
+use super::model::{Input, Place, VariableId, Wire};
 use super::network::Walk;
 use super::register::is_constant;
 use super::report::clipped;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::Value;
+use crate::ladder::library::{StandardBlock, Takes};
 use crate::ladder::{CoilKind, VariableClass};
 use crate::source::Span;
 
@@ -21,6 +25,8 @@ pub(super) struct Usage {
     coils: Vec<(Key, Coil)>,
     /// The calls.
     calls: Vec<(Key, Call)>,
+    /// What each instance was given at pins that take constants only, and where first.
+    constants: HashMap<(Key, usize), (Value, Span)>,
 }
 
 /// What tells two places apart: the variable that has the storage, the way from there, and the bit. Places with a computed index
@@ -61,6 +67,31 @@ impl Checker<'_> {
             && let Some(key) = self.key(instance)
         {
             self.usage.calls.push((key, Call { instance: instance.variable, span, rung: (walk.unit, walk.rung) }));
+        }
+    }
+
+    /// Reports a call that gives an instance another constant than an earlier one: what it remembers is of the kind that the
+    /// constant says.
+    pub(super) fn check_same_constants(
+        &mut self,
+        block: StandardBlock,
+        instance: &Place,
+        inputs: &[Input],
+        span: Span,
+    ) {
+        let Some(key) = self.key(instance) else { return };
+        for (pin, declared) in block.inputs().iter().enumerate().filter(|(_, pin)| pin.takes == Takes::Constant) {
+            let given = inputs.iter().find(|input| input.pin == pin);
+            let Some(Wire::Value(value)) = given.map(|input| &input.wire) else { continue };
+            let Some(value) = value.constant() else { continue };
+            let (first, place) = *self.usage.constants.entry((key.clone(), pin)).or_insert((value, span));
+            if first != value {
+                let number = |value: Value| value.as_integer().unwrap_or_default();
+                let message =
+                    format!("`{}` is {} here, and {} in another call", declared.name, number(value), number(first));
+                let problem = Diagnostic::new(Code::WrongArguments, span, message).related(place, "the other call");
+                self.report.push(problem.hint("an instance is of one kind; give each call its own"));
+            }
         }
     }
 

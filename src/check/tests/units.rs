@@ -245,3 +245,15 @@ fn registers_are_as_many_as_their_use_or_the_program_says() {
         assert_eq!(one(text), (*code, (*place).to_owned()), "{text}");
     }
 }
+
+#[test]
+fn an_instance_is_of_one_kind_in_all_its_calls() {
+    let of = |kind: u32| {
+        format!(
+            "program p\ninput i\nvar t : TT\nrung {{t(TIMING := i, KIND := 1);}}\nrung i t(KIND := {kind}, PRESET := 5)\n"
+        )
+    };
+    let codes = |text: &str| found(text).into_iter().map(|(code, _)| code).collect::<Vec<_>>();
+    assert_eq!(codes(&of(1)), [Code::RepeatedBlock]);
+    assert!(codes(&of(3)).contains(&Code::WrongArguments));
+}
