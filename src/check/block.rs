@@ -8,7 +8,7 @@ use super::register::is_constant;
 use super::{Checker, types};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
-use crate::ladder::library::Takes;
+use crate::ladder::library::{StandardBlock, Takes};
 use crate::ladder::{self, BlockCall, Name};
 use crate::source::Span;
 

@@ -105,7 +105,7 @@ impl Checker<'_> {
 
     /// Reports what the rungs of all units show together.
     pub(super) fn check_usage(&mut self) {
-        let Usage { mut coils, mut calls } = std::mem::take(&mut self.usage);
+        let Usage { mut coils, mut calls, .. } = std::mem::take(&mut self.usage);
         // Both sorts keep the order of the rungs among equals.
         coils.sort_by(|(a, _), (b, _)| a.cmp(b));
         for group in coils.chunk_by(|(a, _), (b, _)| a == b) {
