@@ -132,7 +132,7 @@ fn the_command_takes_a_folder_and_refuses_one_without_a_project() {
     std::fs::write(folder.join("project.json"), project).expect("it can be written");
     std::fs::write(programs.join("main.ld"), file("b : bool;", &[drawn()])).expect("it can be written");
     let (code, text) = check();
-    assert!(code == Some(0) && text.contains("1 rungs, 0 errors"), "{text}");
+    assert!(code == Some(0) && text.contains("1 rung, 0 errors"), "{text}");
     std::fs::write(programs.join("main.ld"), file("a : bool;", &[drawn()])).expect("it can be written");
     let (code, text) = check();
     assert!(code == Some(1) && text.contains("main.ld:"), "{text}");

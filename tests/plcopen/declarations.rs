@@ -27,7 +27,7 @@ fn types_and_initial_values_are_read() {
     assert_eq!(
         native_text(&text).split("\nrung").next().map(str::trim_end),
         Some(
-            "type colour : (red, green := 4)\n\
+            "imported\n\ntype colour : (red, green := 4)\n\
              \n\
              type point : struct\n  x : REAL := 1.5\n  n : INT\nend_struct\n\
              \n\
@@ -73,7 +73,7 @@ fn units_tasks_and_globals_are_read() {
         <globalVars><variable name='total'><type><BOOL/></type></variable></globalVars></configuration>";
     assert_eq!(
         native_text(&project(&(block + &function + &main), configuration)),
-        "global total : BOOL\n\
+        "imported\n\nglobal total : BOOL\n\
          \n\
          task fast(interval := T#20ms, priority := 1)\n\
          \n\
