@@ -1,10 +1,10 @@
-//! Files that strangers wrote, where they are there: in the folder that `RUNG_CORPUS` names. Each is read and checked; what
+//! Files that strangers wrote, where they are there. Each is read and checked; what
 //! checks runs the same on every engine, and comes back from every format that Rung writes.
 //!
-//! `RUNG_CORPUS=… cargo test --test agreement corpus -- --nocapture` prints the table.
+//! `cargo test --test agreement corpus -- --nocapture` prints the table.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rung::check::{Checked, check};
 use rung::diagnostic::{Code, Diagnostic, any_error};
@@ -17,6 +17,7 @@ use rung::opt;
 use rung::source::Source;
 use rung_runtime::Scan;
 
+use crate::support::corpus;
 use crate::support::random_stimuli::{Stimuli, observed};
 use crate::support::rig::Rig;
 use crate::support::same_trace::same_trace;
@@ -35,8 +36,8 @@ pub(crate) const WRITERS: [(&str, Writer); 3] =
 #[test]
 #[expect(clippy::print_stdout, reason = "the table is for whoever runs the test with --nocapture")]
 fn files_of_the_corpus_run_alike_everywhere_and_come_back_from_every_format() {
-    let Some(folder) = std::env::var_os("RUNG_CORPUS").map(PathBuf::from) else {
-        println!("RUNG_CORPUS is not set: the files of the corpus are not tested");
+    let Some(folder) = corpus::folder() else {
+        println!("neither RUNG_CORPUS nor ../shared/corpus is a folder: the files of the corpus are not tested");
         return;
     };
     let mut files = Vec::new();

@@ -21,6 +21,7 @@ mod units;
 
 #[path = "../support"]
 mod support {
+    pub(crate) mod corpus;
     pub(crate) mod coverage;
     pub(crate) mod dice;
     pub(crate) mod drawing;

@@ -1,19 +1,11 @@
-//! The front end for OpenPLC Editor 4: every quirk of the format in a small drawing of its own, projects, hostile files, and the
-//! files of the corpus where it is there.
+//! The front end for OpenPLC Editor 4: every quirk of the format in a small drawing of its own, projects, and
+//! hostile files.
 
 mod bodies;
-mod corpus;
 mod drawing;
 mod errors;
 mod hostile;
 mod projects;
-
-#[path = "../support"]
-mod support {
-    #[expect(dead_code, reason = "random programs, which are not needed here, need more of it")]
-    pub(crate) mod dice;
-    pub(crate) mod random_stimuli;
-}
 
 use rung::check::check;
 use rung::diagnostic::Diagnostic;

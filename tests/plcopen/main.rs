@@ -1,7 +1,5 @@
-//! The front end for PLCopen XML: every quirk of the format in a small drawing of its own, hostile files, and the files of
-//! the corpus where it is there.
+//! The front end for PLCopen XML: every quirk of the format in a small drawing of its own, and hostile files.
 
-mod corpus;
 mod declarations;
 mod drawing;
 mod errors;
