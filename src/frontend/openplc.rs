@@ -3,7 +3,7 @@
 //! A unit is a file: its declarations in IEC text, then its drawing in JSON, then `END_PROGRAM`. A project is a folder of such
 //! files with a `project.json`, which [`Source::joined`] makes one source; early projects are one JSON file that holds the units
 //! too. `files` tells text and JSON apart; the text is read as structured text, `diagram` reads the drawings, and
-//! [`graph`](super::graph) makes rungs of them, as it does for PLCopen: the editor itself compiles by way of PLCopen.
+//! `graph` makes rungs of them, as it does for PLCopen: the editor itself compiles by way of PLCopen.
 //!
 //! Syntax only, as in all front ends; whatever the bytes, the answer is a program and diagnostics, in bounded memory and time.
 

@@ -1,7 +1,7 @@
 //! PLCopen TC6 XML, as OpenPLC Editor, Beremiz, CODESYS and others write it. `docs/plcopen.md` is its reference.
 //!
 //! [`parse`] reads declarations, tasks and the bodies in LD and FBD, whatever the namespace or prefix. A body is a
-//! graph of elements that name those they are wired to: `diagram` reads it, and [`graph`] makes rungs of it. Syntax only: nothing here judges a type, and types are
+//! graph of elements that name those they are wired to: `diagram` reads it, and `graph` makes rungs of it. Syntax only: nothing here judges a type, and types are
 //! looked at only where a wire needs a variable of its own.
 //!
 //! Whatever the bytes, the answer is a program and diagnostics, in bounded memory and time.
