@@ -13,4 +13,6 @@ mod support {
     pub(crate) mod drawing;
     pub(crate) mod random_program;
     pub(crate) mod random_stimuli;
+    pub(crate) mod same_trace;
+    pub(crate) mod shrink;
 }

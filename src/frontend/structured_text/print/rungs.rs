@@ -3,10 +3,11 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::calls::{ENO_OF_INDEX, is_computed};
 use super::names::Names;
 use super::power::{Change, HIGHEST, Power, depends, read};
 use super::uses;
-use super::words::Words;
+use super::words::{Words, pin};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::Step;
 use crate::ladder::{
@@ -156,14 +157,23 @@ impl<'a> Rungs<'a> {
 
     /// A statement that executes while there is power.
     pub(super) fn line_while(&mut self, power: &Power, text: &str) {
+        self.line_either(power, text, None);
+    }
+
+    /// A statement that executes while there is power, and one that executes while there is none.
+    pub(super) fn line_either(&mut self, power: &Power, text: &str, otherwise: Option<&str>) {
         match power {
-            Power::Never => {}
+            Power::Never => otherwise.into_iter().for_each(|otherwise| self.line(otherwise)),
             Power::Always => self.line(text),
             Power::While(condition) => {
                 self.open_guards();
                 let condition = self.words().expression(condition);
                 self.open(&condition);
                 self.line(text);
+                if let Some(otherwise) = otherwise {
+                    self.text.push_str(&format!("{}ELSE\n", "  ".repeat(self.indent - 1)));
+                    self.line(otherwise);
+                }
                 self.close();
             }
         }
@@ -442,6 +452,14 @@ impl<'a> Rungs<'a> {
             let message = "the power behind these statements depends on whether an index is out of range";
             self.problem(span, message);
         }
+        uses::calls(list, &mut |call| {
+            if self.is_function(call)
+                && let (Some(enable), Some(eno)) = (pin(call, "EN"), pin(call, "ENO"))
+                && (is_computed(enable) || is_computed(eno))
+            {
+                self.problem(eno.span, ENO_OF_INDEX);
+            }
+        });
         let power = if needed { self.held(power, &Change::All) } else { power };
         self.spill(&Change::All);
         if let Power::Never = power {
