@@ -37,6 +37,8 @@ pub(super) struct Rungs<'a> {
     nodes: HashMap<String, Power>,
     /// For the place of a rung, the flag that a jump to it sets.
     skips: BTreeMap<usize, String>,
+    /// Whether the rung before has a jump.
+    jumped: bool,
     /// Flags that have to be off for what comes next, none of which is written as a condition yet.
     guards: Vec<String>,
     /// The keys of variables, with those that are global.
@@ -72,6 +74,7 @@ impl<'a> Rungs<'a> {
             live: Vec::new(),
             nodes: HashMap::new(),
             skips: BTreeMap::new(),
+            jumped: false,
             guards: Vec::new(),
             declared,
             rungs,
@@ -87,7 +90,9 @@ impl<'a> Rungs<'a> {
         for (place, rung) in self.unit.rungs.iter().enumerate() {
             let active: Vec<String> =
                 self.skips.iter().filter(|(target, _)| **target > place).map(|(_, flag)| flag.clone()).collect();
-            if active != open {
+            // Behind one more jump under a condition, its flag has to be looked at again.
+            let jumped = std::mem::take(&mut self.jumped);
+            if jumped || active != open {
                 if !open.is_empty() {
                     self.close();
                 }
@@ -501,6 +506,7 @@ impl<'a> Rungs<'a> {
             }
         };
         self.line_while(power, &format!("{flag} := TRUE;"));
+        self.jumped = true;
         self.guards.push(flag);
     }
 
