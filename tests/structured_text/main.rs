@@ -4,6 +4,7 @@
 mod constructs;
 mod hostile;
 mod random;
+mod regressions;
 mod units;
 
 #[path = "../support"]

@@ -8,7 +8,7 @@ use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{
-    Argument, BlockCall, Expression, ExpressionKind, Reference, Root, Step, UnitKind, VariableClass, Wire, key,
+    Argument, BlockCall, Circuit, Expression, ExpressionKind, Reference, Root, Step, UnitKind, VariableClass, Wire, key,
 };
 use crate::source::Span;
 
@@ -139,7 +139,9 @@ impl Rungs<'_> {
             let mut circuits = 0;
             for argument in &call.arguments {
                 if let Wire::Circuit(circuit) = &argument.wire {
-                    if !conducts(circuit) && !values.is_empty() {
+                    let is_first = feeds.is_none() && circuits == 0;
+                    let is_late = !values.is_empty() || !is_first && rungs.reaches(circuit, &call.instance);
+                    if !conducts(circuit) && is_late {
                         rungs.problem(
                             argument.span,
                             "what this circuit does would come before the pins that stand before it",
@@ -176,6 +178,17 @@ impl Rungs<'_> {
             }
         }
         (left, enable)
+    }
+
+    /// Whether a circuit may write the inputs of an instance.
+    fn reaches(&self, circuit: &Circuit, instance: &Reference) -> bool {
+        let Root::Name(name) = &instance.root else { return true };
+        let key = name.key();
+        let is_shared = self.program.globals.iter().any(|global| global.name.key() == key)
+            || self.unit.variables.iter().any(|one| one.name.key() == key && one.class == VariableClass::InOut);
+        let mut found = is_shared;
+        uses::circuit(circuit, &mut |mentioned| found |= uses::root_key(mentioned).is_some_and(|root| root == key));
+        found
     }
 
     /// A box of a function, which is enabled by the power on its left.

@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use crate::frontend::native::print::words::literal;
-use crate::ladder::functions::Function;
+use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::{
     Argument, BinaryOperator, BlockCall, Expression, ExpressionKind, Literal, Reference, Root, Statement,
     StatementKind, Step, TypeReference, UnaryOperator, Wire,
@@ -240,6 +240,12 @@ impl Words<'_> {
             .iter()
             .filter(|argument| !is_result(argument) && !argument.pin.text.eq_ignore_ascii_case("EN"))
             .collect();
+        // A whole array or structure, which only an assignment takes; of other values it says the same.
+        if Function::from_name(name) == Some(Function::Standard(StandardFunction::Move))
+            && let (Some(target), [Argument { wire: Wire::Value(value), .. }]) = (&target, others.as_slice())
+        {
+            return format!("{target}{}", self.expression(value));
+        }
         let arguments = self
             .positional(name, &others)
             .unwrap_or_else(|| others.iter().filter_map(|one| self.argument(one)).collect());
