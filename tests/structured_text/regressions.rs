@@ -102,3 +102,20 @@ fn a_circuit_at_a_pin_that_writes_the_pin_before_it_is_refused() {
          rung\n  a c(LD := [ b {t(CLK := b, Q => c.CD);} ], PV := 4)\n",
     );
 }
+
+#[test]
+fn an_index_out_of_range_takes_the_power_behind_a_condition() {
+    comes_back(
+        "program p\n  input a\n  input n : INT\n  output q\n  var x : array [0..2] of BOOL\n\
+         rung\n  {a XOR x[n]} (q)\n",
+    );
+}
+
+#[test]
+fn power_behind_a_moved_array_that_an_index_decides_is_refused() {
+    let before = "type row : array [0..1] of INT\nprogram p\n  input n : INT\n  output q\n\
+                  var x : array [0..2] of row\n  var y : row\n";
+    for rung in ["MOVE(IN := y, OUT => x[n]) (q)", "{x[n] := y} (q)"] {
+        is_refused(&format!("{before}rung\n  {rung}\n"));
+    }
+}

@@ -249,6 +249,14 @@ impl Rungs<'_> {
         if unit.is_none() && !has_result {
             return self.without_result(&call, enabled, needed, can_fail);
         }
+        let is_move = name.as_ref().is_some_and(|name| name.key() == "move");
+        if let (true, Some(Wire::Value(value)), Some(Wire::Output(target))) =
+            (is_move && can_fail, pin(&call, "IN").map(|one| &one.wire), pin(&call, "OUT").map(|one| &one.wire))
+            && (needed || pin(&call, "ENO").is_some())
+            && !self.moves_one_value(target, value)
+        {
+            self.problem(call.instance.span, ENO_OF_INDEX);
+        }
         let mut right = enabled.clone();
         if needed && can_fail && pin(&call, "ENO").is_none() {
             self.spill(&Change::All);

@@ -9,10 +9,11 @@ use super::power::{Change, HIGHEST, Power, depends, read};
 use super::uses;
 use super::words::{Words, pin};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::Elementary;
 use crate::ladder::Step;
 use crate::ladder::{
-    Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, Name, Program, Reference, Root, Rung,
-    Statement, Unit, UnitKind, Variable, VariableClass, key,
+    Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Name, Program, Reference,
+    Root, Rung, Statement, Unit, UnitKind, Variable, VariableClass, key,
 };
 use crate::source::Span;
 
@@ -344,6 +345,19 @@ impl<'a> Rungs<'a> {
     /// What a contact or a condition lets through.
     fn contact(&mut self, element: &Element) -> Power {
         match &element.kind {
+            ElementKind::Condition(condition)
+                if !matches!(condition.kind, ExpressionKind::Read(_)) && {
+                    let mut found = false;
+                    uses::expression(condition, &mut |mentioned| found |= uses::has_computed_index(mentioned));
+                    found
+                } =>
+            {
+                // An index that is out of range takes the power away, whatever the condition comes to then.
+                let (holds, in_range) = (self.temporary(), self.temporary());
+                let condition = self.words().expression(condition);
+                self.line(&format!("{holds} := MOVE(IN := {condition}, ENO => {in_range});"));
+                Power::of_variable(&holds).and(Power::of_variable(&in_range))
+            }
             ElementKind::Contact { kind: ContactKind::Open, operand } | ElementKind::Condition(operand) => {
                 Power::of(operand.clone())
             }
@@ -434,9 +448,13 @@ impl<'a> Rungs<'a> {
         uses::reference(target, &mut |mentioned| computed_index |= uses::has_computed_index(mentioned));
         uses::expression(value, &mut |mentioned| computed_index |= uses::has_computed_index(mentioned));
         let place = self.words().reference(target);
+        let drawn = value;
         let value = self.words().expression(value);
         if needed && computed_index {
             // An index that is out of range takes the power away.
+            if !self.moves_one_value(target, drawn) {
+                self.problem(target.span, ENO_OF_INDEX);
+            }
             self.spill(&change);
             let right = self.temporary();
             let statement = format!("{place} := MOVE(IN := {value}, ENO => {right});");
@@ -448,6 +466,22 @@ impl<'a> Rungs<'a> {
         self.spill(&change);
         self.line_while(&power, &format!("{place} := {value};"));
         power
+    }
+
+    /// Whether what is moved is elementary, as far as can be seen here; MOVE of a whole array or structure has no ENO in a statement
+    /// that would tell of an index.
+    pub(super) fn moves_one_value(&self, target: &Reference, value: &Expression) -> bool {
+        let ExpressionKind::Read(value) = &value.kind else { return true };
+        [target, value].into_iter().any(|place| match (&place.root, place.steps.last()) {
+            (Root::Address(_), _) | (_, Some(Step::Bit(..))) => true,
+            (Root::Name(name), last) => {
+                let ty = self.declared.get(&name.key()).map(|declared| declared.ty.as_ref());
+                let is_elementary = |ty: &crate::ladder::TypeReference| {
+                    Elementary::from_name(&ty.name.text).is_some() && (ty.dimensions.is_empty() || last.is_some())
+                };
+                ty.is_some_and(|ty| ty.is_none_or(is_elementary))
+            }
+        })
     }
 
     fn statements(&mut self, list: &[Statement], power: Power, needed: bool, span: Span) -> Power {
