@@ -52,7 +52,7 @@ fn seeds() -> std::ops::Range<u64> {
         Err(_) => otherwise,
     };
     let first = number("RUNG_FIRST_SEED", 0);
-    first..first + number("RUNG_SEEDS", 200)
+    first..first + number("RUNG_SEEDS", 1000)
 }
 
 #[test]
@@ -77,8 +77,7 @@ fn a_random_program_comes_back_from_plcopen() {
         }
         compared += 1;
     }
-    println!("{compared} programs were written");
-    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared > 20, "only {compared} programs could be written");
+    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared >= 25, "only {compared} programs could be written");
 }
 
 #[test]
