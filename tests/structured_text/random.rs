@@ -59,7 +59,7 @@ fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
         }
         compared += 1;
     }
-    // Of 1000 seeds, 52 give one: the others declare blocks or registers of the register machine, which structured text has not.
+    // Of 1000 seeds, 52 give one; the others use what structured text has not, such as the register machine.
     assert!(std::env::var("RUNG_SEEDS").is_ok() || compared >= 50, "only {compared} programs could be written");
 }
 
