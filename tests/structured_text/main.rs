@@ -4,6 +4,7 @@
 mod constructs;
 mod hostile;
 mod random;
+mod regressions;
 mod units;
 
 #[path = "../support"]
@@ -13,4 +14,6 @@ mod support {
     pub(crate) mod drawing;
     pub(crate) mod random_program;
     pub(crate) mod random_stimuli;
+    pub(crate) mod same_trace;
+    pub(crate) mod shrink;
 }

@@ -1,45 +1,14 @@
 //! Random programs, written as structured text and read again, have the same trace.
 
 use rung::check::{Checked, check};
-use rung::diagnostic::render;
-use rung::elementary::Value;
-use rung::engine::interp::Interpreter;
+use rung::diagnostic::{Diagnostic, render};
 use rung::frontend::{self, native, structured_text};
 use rung::ladder::Program;
-use rung::logic::Layout;
-use rung::lower::lower;
 use rung::source::Source;
-use rung_runtime::Scan;
 
 use crate::support::random_program::random_program;
-use crate::support::random_stimuli::{Stimuli, observed};
-
-/// A program on the interpreter.
-struct Machine {
-    layout: Layout,
-    interpreter: Interpreter,
-    image: Vec<u8>,
-}
-
-impl Machine {
-    fn new(checked: &Checked) -> Self {
-        let logic = lower(checked, &Source::new("drawn", ""), None).expect("a small image");
-        let interpreter = Interpreter::new(&logic);
-        let image = logic.layout.initial_image();
-        Self { layout: logic.layout, interpreter, image }
-    }
-
-    fn set(&mut self, name: &str, value: Value) {
-        let observed = self.layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(name));
-        let slot = self.layout.slot(observed.unwrap_or_else(|| panic!("nothing is named {name}")).slot);
-        slot.write(&mut self.image, value);
-    }
-
-    fn get(&self, name: &str) -> Option<Value> {
-        let observed = self.layout.observed().iter().find(|observed| observed.name.eq_ignore_ascii_case(name))?;
-        Some(self.layout.slot(observed.slot).read(&self.image))
-    }
-}
+use crate::support::same_trace::same_trace;
+use crate::support::shrink;
 
 fn checked(program: &Program) -> Option<Checked> {
     check(program).0
@@ -47,19 +16,36 @@ fn checked(program: &Program) -> Option<Checked> {
 
 /// Leaves out the rungs that structured text cannot say; `None` where the rest is no program.
 fn writable(mut program: Program) -> Option<Program> {
-    let mut place = program.units[0].rungs.len();
-    while structured_text::print(&program).is_err() && place > 0 {
-        place -= 1;
-        let mut alone = program.clone();
-        let rung = alone.units[0].rungs.remove(place);
-        let before = structured_text::print(&program).err().map_or(0, |problems| problems.len());
-        let after = structured_text::print(&alone).err().map_or(0, |problems| problems.len());
-        if after < before {
-            program = alone;
+    for unit in 0..program.units.len() {
+        for rung in (0..program.units[unit].rungs.len()).rev() {
+            let Err(problems) = structured_text::print(&program) else { break };
+            let mut without = program.clone();
+            without.units[unit].rungs.remove(rung);
+            if structured_text::print(&without).map_or_else(|fewer| fewer.len(), |_| 0) < problems.len() {
+                program = without;
+            }
         }
-        drop(rung);
     }
     (structured_text::print(&program).is_ok() && checked(&program).is_some()).then_some(program)
+}
+
+/// What is wrong with a program that was read again; nothing if it cannot be written.
+fn problem(program: &Program, seed: u64) -> Option<String> {
+    let drawn = checked(program)?;
+    let text = structured_text::print(program).ok()?;
+    if !structured_text::recognises(&text) {
+        return Some(format!("it is not recognised\n{text}"));
+    }
+    let source = Source::new("random.st", text.as_str());
+    let parsed = frontend::parse(&source);
+    let (again, problems) = check(&parsed.program);
+    let errors: Vec<_> = problems.into_iter().filter(Diagnostic::is_error).collect();
+    let (true, Some(again)) = (parsed.diagnostics.is_empty(), again) else {
+        return Some(format!("{}{}{text}", render(&source, &parsed.diagnostics), render(&source, &errors)));
+    };
+    // A name that IEC 61131-3 has not is another one there, and stands in a comment behind its declaration.
+    let is_kept = |name: &str| !text.contains(&format!("; (* {name} *)"));
+    same_trace(&drawn, &again, seed, 100, is_kept).err().map(|difference| format!("{difference}\n{text}"))
 }
 
 #[test]
@@ -67,47 +53,14 @@ fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
     let mut compared = 0;
     for seed in seeds() {
         let Some(program) = writable(random_program(seed)) else { continue };
-        let text = structured_text::print(&program).expect("it was tried");
-        let native = native::print(&program);
-        let source = Source::new("random.st", text.as_str());
-        assert!(structured_text::recognises(&text), "{text}");
-        let parsed = frontend::parse(&source);
-        let problems = render(&source, &parsed.diagnostics);
-        assert!(parsed.diagnostics.is_empty(), "seed {seed}\n{problems}\n{native}\n{text}");
-        let (again, problems) = check(&parsed.program);
-        let again = again.unwrap_or_else(|| {
-            panic!(
-                "seed {seed}\n{}\n{native}\n{text}",
-                render(
-                    &source,
-                    &problems.into_iter().filter(rung::diagnostic::Diagnostic::is_error).collect::<Vec<_>>()
-                )
-            )
-        });
-        let drawn = checked(&program).expect("it was tried");
-        let (mut first, mut second) = (Machine::new(&drawn), Machine::new(&again));
-        let mut stimuli = Stimuli::new(seed, &drawn, &observed(&first.layout));
-        for scan in 0..100 {
-            let (now, changes) = stimuli.next();
-            for (name, value) in changes {
-                first.set(&name, value);
-                second.set(&name, value);
-            }
-            first.interpreter.scan(&mut first.image, now);
-            second.interpreter.scan(&mut second.image, now);
-            // A name that IEC 61131-3 has not is another one there, and stands in a comment behind its declaration.
-            for observed in
-                first.layout.observed().iter().filter(|observed| !text.contains(&format!("; (* {} *)", observed.name)))
-            {
-                let expected = first.get(&observed.name);
-                let found = second.get(&observed.name);
-                assert_eq!(found, expected, "seed {seed}, scan {scan}: {}\n{native}\n{text}", observed.name);
-            }
+        if problem(&program, seed).is_some() {
+            let small = shrink::smallest(&program, |smaller| problem(smaller, seed).is_some());
+            panic!("seed {seed}: {}\n{}", problem(&small, seed).unwrap_or_default(), native::print(&small));
         }
         compared += 1;
     }
-    // The others keep variables of the register machine, which structured text has not.
-    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared > 50, "only {compared} programs could be written");
+    // Of 1000 seeds, 52 give one; the others use what structured text has not, such as the register machine.
+    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared >= 50, "only {compared} programs could be written");
 }
 
 /// The seeds; `RUNG_FIRST_SEED=17 RUNG_SEEDS=1` looks at one again.
@@ -117,5 +70,5 @@ fn seeds() -> std::ops::Range<u64> {
         Err(_) => otherwise,
     };
     let first = number("RUNG_FIRST_SEED", 0);
-    first..first + number("RUNG_SEEDS", 200)
+    first..first + number("RUNG_SEEDS", 1000)
 }

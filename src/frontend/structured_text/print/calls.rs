@@ -7,11 +7,36 @@ use super::words::pin;
 use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::library::StandardBlock;
-use crate::ladder::{BlockCall, Expression, ExpressionKind, Reference, Root, Step, UnitKind, VariableClass, Wire, key};
+use crate::ladder::{
+    Argument, BlockCall, Circuit, Expression, ExpressionKind, Reference, Root, Step, UnitKind, VariableClass, Wire, key,
+};
 use crate::source::Span;
 
 /// The blocks of the register machine, which no other compiler has.
 const REGISTER_MACHINE: [&str; 9] = ["TT", "TS", "UC", "DC", "DR", "BS", "BC", "SHIFTL", "SHIFTR"];
+
+/// Why a box whose ENO depends on an index cannot be written.
+pub(super) const ENO_OF_INDEX: &str = "ENO of this box depends on whether an index is out of range";
+
+/// Whether what is wired to a pin has an index that is computed.
+pub(super) fn is_computed(argument: &Argument) -> bool {
+    let mut found = false;
+    let mut visit = |mentioned: uses::Use<'_>| found |= uses::has_computed_index(mentioned);
+    match &argument.wire {
+        Wire::Value(value) => uses::expression(value, &mut visit),
+        Wire::Circuit(circuit) => uses::circuit(circuit, &mut visit),
+        Wire::Output(target) => uses::reference(target, &mut visit),
+    }
+    found
+}
+
+fn is_computed_power(power: &Power) -> bool {
+    let mut found = false;
+    if let Power::While(expression) = power {
+        uses::expression(expression, &mut |mentioned| found |= uses::has_computed_index(mentioned));
+    }
+    found
+}
 
 /// Whether other compilers have a block.
 pub(in crate::frontend) fn is_iec(block: StandardBlock) -> bool {
@@ -39,40 +64,50 @@ impl Rungs<'_> {
         };
         let is_wired = |name: &str| pin(call, name).is_some();
         let feeds = pins.input.filter(|input| !is_wired(input));
-        let mut arguments = Vec::new();
-        let (left, enable) = self.arguments(call, left, feeds.as_deref(), pins.has_enable, &mut arguments);
-        let enabled = if feeds.is_some() { enable } else { self.and(left, enable) };
         let output = match &call.power_output {
             Some(output) if !output.text.eq_ignore_ascii_case("ENO") => Some(output.text.clone()),
             Some(_) => None,
             None => pins.output,
         };
-        let enabled = if needed && output.is_none() { self.held(enabled, &Change::All) } else { enabled };
-        self.spill(&Change::All);
-        let instance = self.words().reference(&call.instance);
-        let enabled_by_pin = matches!(enabled, Power::While(_)) && !pins.has_enable && self.keeps_inputs(call);
-        let condition = if enabled_by_pin {
-            arguments.insert(0, format!("EN := {}", self.words().expression(&enabled.expression())));
-            Power::Always
-        } else {
-            enabled.clone()
-        };
-        let mut statements = vec![format!("{instance}({});", arguments.join(", "))];
-        if let Some(argument) = pin(call, "ENO").filter(|_| !pins.has_enable)
-            && let Wire::Output(target) = &argument.wire
-        {
-            let target = self.words().reference(target);
-            match (&enabled, enabled_by_pin) {
-                (Power::While(enable), true) => {
-                    let enable = self.words().expression(enable);
-                    statements.push(format!("IF {enable} THEN {target} := TRUE; END_IF;"));
-                }
-                _ => statements.push(format!("{target} := TRUE;")),
-            }
+        let eno = pin(call, "ENO").filter(|_| !pins.has_enable);
+        // An index that is out of range takes ENO away, which only the call itself can say.
+        let can_fail = (eno.is_some() || needed && output.is_none()) && call.arguments.iter().any(is_computed);
+        let mut arguments = Vec::new();
+        let (left, enable) = self.arguments(call, left, feeds.as_deref(), pins.has_enable, &mut arguments);
+        let mut enabled = if feeds.is_some() { enable } else { self.and(left, enable) };
+        if needed && output.is_none() && !can_fail {
+            enabled = self.held(enabled, &Change::All);
         }
-        self.line_while(&condition, &statements.join(" "));
+        self.spill(&Change::All);
+        let is_conditional = !matches!(enabled, Power::Always);
+        let enabled_by_pin = is_conditional && !pins.has_enable && (can_fail || self.keeps_inputs(call));
+        if enabled_by_pin {
+            arguments.insert(0, format!("EN := {}", self.words().expression(&enabled.expression())));
+        }
+        let mut right = enabled.clone();
+        if can_fail && needed && output.is_none() {
+            if eno.is_some() {
+                self.problem(span, "ENO of this box is wired and gives the power behind it, too");
+            }
+            let fresh = self.temporary();
+            arguments.push(format!("ENO => {fresh}"));
+            right = Power::of_variable(&fresh);
+        } else if let Some(eno) = eno.filter(|_| can_fail || enabled_by_pin) {
+            arguments.extend(self.words().argument(eno));
+        }
+        let instance = self.words().reference(&call.instance);
+        let mut statement = format!("{instance}({});", arguments.join(", "));
+        if enabled_by_pin || can_fail {
+            self.line(&statement);
+        } else {
+            if let Some(Wire::Output(target)) = eno.map(|eno| &eno.wire) {
+                statement.push_str(&format!(" {} := TRUE;", self.words().reference(target)));
+            }
+            let otherwise = self.words().not_enabled(call).filter(|_| eno.is_some());
+            self.line_either(&enabled, &statement, otherwise.as_deref());
+        }
         match output {
-            None => enabled,
+            None => right,
             Some(output) => {
                 let mut reference: Reference = call.instance.clone();
                 reference.steps.push(Step::Member(crate::ladder::Name::new(output, Span::default())));
@@ -104,7 +139,9 @@ impl Rungs<'_> {
             let mut circuits = 0;
             for argument in &call.arguments {
                 if let Wire::Circuit(circuit) = &argument.wire {
-                    if !conducts(circuit) && !values.is_empty() {
+                    let is_first = feeds.is_none() && circuits == 0;
+                    let is_late = !values.is_empty() || !is_first && rungs.reaches(circuit, &call.instance);
+                    if !conducts(circuit) && is_late {
                         rungs.problem(
                             argument.span,
                             "what this circuit does would come before the pins that stand before it",
@@ -143,6 +180,17 @@ impl Rungs<'_> {
         (left, enable)
     }
 
+    /// Whether a circuit may write the inputs of an instance.
+    fn reaches(&self, circuit: &Circuit, instance: &Reference) -> bool {
+        let Root::Name(name) = &instance.root else { return true };
+        let key = name.key();
+        let is_shared = self.program.globals.iter().any(|global| global.name.key() == key)
+            || self.unit.variables.iter().any(|one| one.name.key() == key && one.class == VariableClass::InOut);
+        let mut found = is_shared;
+        uses::circuit(circuit, &mut |mentioned| found |= uses::root_key(mentioned).is_some_and(|root| root == key));
+        found
+    }
+
     /// A box of a function, which is enabled by the power on its left.
     fn function_box(&mut self, call: &BlockCall, left: Power, needed: bool) -> Power {
         let mut call = call.clone();
@@ -166,6 +214,7 @@ impl Rungs<'_> {
                 _ => rest.push(argument),
             }
         }
+        let enable_fails = is_computed_power(&enable);
         call.arguments = rest;
         let enabled = self.and(left, enable);
         let name = call.instance.as_name().cloned();
@@ -175,6 +224,11 @@ impl Rungs<'_> {
         let chosen = call.power_output.clone().filter(|output| !output.text.eq_ignore_ascii_case("ENO"));
         let has_result =
             call.arguments.iter().any(|one| matches!(one.wire, Wire::Output(_)) && result_of(&one.pin.text));
+        if let Some(eno) = pin(&call, "ENO")
+            && (enable_fails || is_computed(eno) && !matches!(enabled, Power::Always))
+        {
+            self.problem(eno.span, ENO_OF_INDEX);
+        }
         if let Some(output) = chosen.filter(|_| needed) {
             return self.chosen_output(call, &output, result_of(&output.text), enabled);
         }
@@ -187,11 +241,24 @@ impl Rungs<'_> {
             let unused = self.fresh("unused", &ty);
             call.arguments.push(wired("OUT", &unused));
         }
-        let does_nothing = unit.is_none() && !has_result;
-        let mut can_fail = does_nothing || is_division(&call);
+        let mut can_fail = is_division(&call);
         uses::call(&call, &mut |mentioned| can_fail |= uses::has_computed_index(mentioned));
+        if needed && enable_fails {
+            self.problem(call.instance.span, ENO_OF_INDEX);
+        }
+        if unit.is_none() && !has_result {
+            return self.without_result(&call, enabled, needed, can_fail);
+        }
+        let is_move = name.as_ref().is_some_and(|name| name.key() == "move");
+        if let (true, Some(Wire::Value(value)), Some(Wire::Output(target))) =
+            (is_move && can_fail, pin(&call, "IN").map(|one| &one.wire), pin(&call, "OUT").map(|one| &one.wire))
+            && (needed || pin(&call, "ENO").is_some())
+            && !self.moves_one_value(target, value)
+        {
+            self.problem(call.instance.span, ENO_OF_INDEX);
+        }
         let mut right = enabled.clone();
-        if needed && can_fail && !does_nothing && pin(&call, "ENO").is_none() {
+        if needed && can_fail && pin(&call, "ENO").is_none() {
             self.spill(&Change::All);
             let eno = self.temporary();
             self.line(&format!("{eno} := FALSE;"));
@@ -206,9 +273,29 @@ impl Rungs<'_> {
         }
         let enabled = if needed && !can_fail { right.clone() } else { enabled };
         self.spill(&Change::All);
-        if !does_nothing {
-            let statement = format!("{};", self.words().function_box(&call));
-            self.line_while(&enabled, &statement);
+        let statement = format!("{};", self.words().function_box(&call));
+        let otherwise = self.words().not_enabled(&call);
+        self.line_either(&enabled, &statement, otherwise.as_deref());
+        right
+    }
+
+    /// A box of a standard function whose result goes nowhere: of what it does, ENO is left.
+    fn without_result(&mut self, call: &BlockCall, enabled: Power, needed: bool, can_fail: bool) -> Power {
+        let eno = pin(call, "ENO");
+        let mut acts = can_fail && (needed || eno.is_some());
+        uses::call(call, &mut |mentioned| {
+            acts |= uses::has_computed_index(mentioned)
+                || matches!(mentioned, uses::Use::Function(name) if Function::from_name(&name.text).is_none());
+        });
+        if acts {
+            self.problem(call.instance.span, "the result of this box goes nowhere, though computing it does something");
+        }
+        let right = if needed { self.held(enabled, &Change::All) } else { enabled };
+        self.spill(&Change::All);
+        if let Some(Wire::Output(target)) = eno.map(|eno| &eno.wire) {
+            let value = self.words().expression(&right.expression());
+            let statement = format!("{} := {value};", self.words().reference(target));
+            self.line(&statement);
         }
         right
     }
@@ -235,9 +322,15 @@ impl Rungs<'_> {
         if let Some(argument) = taken
             && let Wire::Output(target) = &argument.wire
         {
+            if is_computed(&argument)
+                && let Some(eno) = pin(&call, "ENO")
+            {
+                self.problem(eno.span, ENO_OF_INDEX);
+            }
             statements.push(format!("{} := {right};", self.words().reference(target)));
         }
-        self.line_while(&enabled, &statements.join(" "));
+        let otherwise = self.words().not_enabled(&call);
+        self.line_either(&enabled, &statements.join(" "), otherwise.as_deref());
         Power::of_variable(&right)
     }
 
@@ -275,11 +368,7 @@ fn is_division(call: &BlockCall) -> bool {
     matches!(function, Some(Function::Standard(StandardFunction::Divide | StandardFunction::Modulo)))
 }
 
-fn wired(pin: &str, variable: &str) -> crate::ladder::Argument {
+fn wired(pin: &str, variable: &str) -> Argument {
     let name = |text: &str| crate::ladder::Name::new(text, Span::default());
-    crate::ladder::Argument {
-        pin: name(pin),
-        wire: Wire::Output(Reference::of_name(name(variable))),
-        span: Span::default(),
-    }
+    Argument { pin: name(pin), wire: Wire::Output(Reference::of_name(name(variable))), span: Span::default() }
 }

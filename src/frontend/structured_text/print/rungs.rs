@@ -3,15 +3,17 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::calls::{ENO_OF_INDEX, is_computed};
 use super::names::Names;
 use super::power::{Change, HIGHEST, Power, depends, read};
 use super::uses;
-use super::words::Words;
+use super::words::{Words, pin};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::elementary::Elementary;
 use crate::ladder::Step;
 use crate::ladder::{
-    Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, Name, Program, Reference, Root, Rung,
-    Statement, Unit, UnitKind, Variable, VariableClass, key,
+    Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Name, Program, Reference,
+    Root, Rung, Statement, Unit, UnitKind, Variable, VariableClass, key,
 };
 use crate::source::Span;
 
@@ -36,6 +38,8 @@ pub(super) struct Rungs<'a> {
     nodes: HashMap<String, Power>,
     /// For the place of a rung, the flag that a jump to it sets.
     skips: BTreeMap<usize, String>,
+    /// Whether the rung before has a jump.
+    jumped: bool,
     /// Flags that have to be off for what comes next, none of which is written as a condition yet.
     guards: Vec<String>,
     /// The keys of variables, with those that are global.
@@ -71,6 +75,7 @@ impl<'a> Rungs<'a> {
             live: Vec::new(),
             nodes: HashMap::new(),
             skips: BTreeMap::new(),
+            jumped: false,
             guards: Vec::new(),
             declared,
             rungs,
@@ -86,7 +91,9 @@ impl<'a> Rungs<'a> {
         for (place, rung) in self.unit.rungs.iter().enumerate() {
             let active: Vec<String> =
                 self.skips.iter().filter(|(target, _)| **target > place).map(|(_, flag)| flag.clone()).collect();
-            if active != open {
+            // Behind one more jump under a condition, its flag has to be looked at again.
+            let jumped = std::mem::take(&mut self.jumped);
+            if jumped || active != open {
                 if !open.is_empty() {
                     self.close();
                 }
@@ -156,14 +163,23 @@ impl<'a> Rungs<'a> {
 
     /// A statement that executes while there is power.
     pub(super) fn line_while(&mut self, power: &Power, text: &str) {
+        self.line_either(power, text, None);
+    }
+
+    /// A statement that executes while there is power, and one that executes while there is none.
+    pub(super) fn line_either(&mut self, power: &Power, text: &str, otherwise: Option<&str>) {
         match power {
-            Power::Never => {}
+            Power::Never => otherwise.into_iter().for_each(|otherwise| self.line(otherwise)),
             Power::Always => self.line(text),
             Power::While(condition) => {
                 self.open_guards();
                 let condition = self.words().expression(condition);
                 self.open(&condition);
                 self.line(text);
+                if let Some(otherwise) = otherwise {
+                    self.text.push_str(&format!("{}ELSE\n", "  ".repeat(self.indent - 1)));
+                    self.line(otherwise);
+                }
                 self.close();
             }
         }
@@ -329,6 +345,19 @@ impl<'a> Rungs<'a> {
     /// What a contact or a condition lets through.
     fn contact(&mut self, element: &Element) -> Power {
         match &element.kind {
+            ElementKind::Condition(condition)
+                if !matches!(condition.kind, ExpressionKind::Read(_)) && {
+                    let mut found = false;
+                    uses::expression(condition, &mut |mentioned| found |= uses::has_computed_index(mentioned));
+                    found
+                } =>
+            {
+                // An index that is out of range takes the power away, whatever the condition comes to then.
+                let (holds, in_range) = (self.temporary(), self.temporary());
+                let condition = self.words().expression(condition);
+                self.line(&format!("{holds} := MOVE(IN := {condition}, ENO => {in_range});"));
+                Power::of_variable(&holds).and(Power::of_variable(&in_range))
+            }
             ElementKind::Contact { kind: ContactKind::Open, operand } | ElementKind::Condition(operand) => {
                 Power::of(operand.clone())
             }
@@ -419,9 +448,13 @@ impl<'a> Rungs<'a> {
         uses::reference(target, &mut |mentioned| computed_index |= uses::has_computed_index(mentioned));
         uses::expression(value, &mut |mentioned| computed_index |= uses::has_computed_index(mentioned));
         let place = self.words().reference(target);
+        let drawn = value;
         let value = self.words().expression(value);
         if needed && computed_index {
             // An index that is out of range takes the power away.
+            if !self.moves_one_value(target, drawn) {
+                self.problem(target.span, ENO_OF_INDEX);
+            }
             self.spill(&change);
             let right = self.temporary();
             let statement = format!("{place} := MOVE(IN := {value}, ENO => {right});");
@@ -435,6 +468,22 @@ impl<'a> Rungs<'a> {
         power
     }
 
+    /// Whether what is moved is elementary, as far as can be seen here; MOVE of a whole array or structure has no ENO in a statement
+    /// that would tell of an index.
+    pub(super) fn moves_one_value(&self, target: &Reference, value: &Expression) -> bool {
+        let ExpressionKind::Read(value) = &value.kind else { return true };
+        [target, value].into_iter().any(|place| match (&place.root, place.steps.last()) {
+            (Root::Address(_), _) | (_, Some(Step::Bit(..))) => true,
+            (Root::Name(name), last) => {
+                let ty = self.declared.get(&name.key()).map(|declared| declared.ty.as_ref());
+                let is_elementary = |ty: &crate::ladder::TypeReference| {
+                    Elementary::from_name(&ty.name.text).is_some() && (ty.dimensions.is_empty() || last.is_some())
+                };
+                ty.is_some_and(|ty| ty.is_none_or(is_elementary))
+            }
+        })
+    }
+
     fn statements(&mut self, list: &[Statement], power: Power, needed: bool, span: Span) -> Power {
         let mut computed_index = false;
         uses::statements(list, &mut |mentioned| computed_index |= uses::has_computed_index(mentioned));
@@ -442,6 +491,14 @@ impl<'a> Rungs<'a> {
             let message = "the power behind these statements depends on whether an index is out of range";
             self.problem(span, message);
         }
+        uses::calls(list, &mut |call| {
+            if self.is_function(call)
+                && let (Some(enable), Some(eno)) = (pin(call, "EN"), pin(call, "ENO"))
+                && (is_computed(enable) || is_computed(eno))
+            {
+                self.problem(eno.span, ENO_OF_INDEX);
+            }
+        });
         let power = if needed { self.held(power, &Change::All) } else { power };
         self.spill(&Change::All);
         if let Power::Never = power {
@@ -483,6 +540,7 @@ impl<'a> Rungs<'a> {
             }
         };
         self.line_while(power, &format!("{flag} := TRUE;"));
+        self.jumped = true;
         self.guards.push(flag);
     }
 

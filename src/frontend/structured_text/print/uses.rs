@@ -101,6 +101,25 @@ pub(in crate::frontend) fn statements<'a>(list: &'a [Statement], visit: Visit<'_
     }
 }
 
+/// The calls among statements.
+pub(in crate::frontend) fn calls<'a>(list: &'a [Statement], visit: &mut dyn FnMut(&'a BlockCall)) {
+    for statement in list {
+        match &statement.kind {
+            StatementKind::Call(call) => visit(call),
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|branch| calls(&branch.body, visit));
+                calls(otherwise, visit);
+            }
+            StatementKind::Case { branches, otherwise, .. } => {
+                branches.iter().for_each(|branch| calls(&branch.body, visit));
+                calls(otherwise, visit);
+            }
+            StatementKind::For { body, .. } => calls(body, visit),
+            StatementKind::Assignment { .. } | StatementKind::Exit | StatementKind::Return => {}
+        }
+    }
+}
+
 pub(in crate::frontend) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) {
     match &expression_.kind {
         ExpressionKind::Literal(_) => {}

@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use crate::frontend::native::print::words::literal;
-use crate::ladder::functions::Function;
+use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::{
     Argument, BinaryOperator, BlockCall, Expression, ExpressionKind, Literal, Reference, Root, Statement,
     StatementKind, Step, TypeReference, UnaryOperator, Wire,
@@ -145,8 +145,13 @@ impl Words<'_> {
                         _ => None,
                     });
                     let line = format!("{};", self.function_box(call));
+                    let not_enabled = self
+                        .not_enabled(call)
+                        .map_or(String::new(), |otherwise| format!("{pad}ELSE\n{pad}  {otherwise}\n"));
                     match enable {
-                        Some(enable) => text.push_str(&format!("{pad}IF {enable} THEN\n{pad}  {line}\n{pad}END_IF;\n")),
+                        Some(enable) => {
+                            text.push_str(&format!("{pad}IF {enable} THEN\n{pad}  {line}\n{not_enabled}{pad}END_IF;\n"))
+                        }
                         None => text.push_str(&format!("{pad}{line}\n")),
                     }
                 }
@@ -235,10 +240,24 @@ impl Words<'_> {
             .iter()
             .filter(|argument| !is_result(argument) && !argument.pin.text.eq_ignore_ascii_case("EN"))
             .collect();
+        // A whole array or structure, which only an assignment takes; of other values it says the same.
+        if Function::from_name(name) == Some(Function::Standard(StandardFunction::Move))
+            && let (Some(target), [Argument { wire: Wire::Value(value), .. }]) = (&target, others.as_slice())
+        {
+            return format!("{target}{}", self.expression(value));
+        }
         let arguments = self
             .positional(name, &others)
             .unwrap_or_else(|| others.iter().filter_map(|one| self.argument(one)).collect());
         format!("{}{}({})", target.unwrap_or_default(), self.names.spell_function(name), arguments.join(", "))
+    }
+
+    /// What a box does that is not enabled, if anything: ENO is FALSE.
+    pub(in crate::frontend) fn not_enabled(self, call: &BlockCall) -> Option<String> {
+        match &pin(call, "ENO")?.wire {
+            Wire::Output(target) => Some(format!("{} := FALSE;", self.reference(target))),
+            _ => None,
+        }
     }
 
     /// The arguments of a standard function in the order of its parameters, where nothing else is wired: all compilers take that.
