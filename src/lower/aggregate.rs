@@ -12,7 +12,7 @@ use crate::logic::ValueId;
 impl<'a> Lowering<'a> {
     /// Copies all values of an array or structure to another of its type.
     pub(super) fn copy(&mut self, target: Part<'a>, source: Part<'a>, condition: Option<ValueId>) {
-        let condition = if target.local { self.executed(condition) } else { self.effective(condition) };
+        let condition = self.reaching(target.home, condition);
         for ((to, count), (from, _)) in self.leaves(target).into_iter().zip(self.leaves(source)) {
             let whole = |cells: Cells, pick| matches!(pick, Pick::Constant(_)) && cells.count == count;
             let whole = whole(to, target.pick) && whole(from, source.pick);
@@ -33,7 +33,7 @@ impl<'a> Lowering<'a> {
 
     /// Sets all values of a variable to what they start with.
     pub(super) fn initialise(&mut self, part: Part<'a>) {
-        let condition = if part.local { self.executed(None) } else { self.effective(None) };
+        let condition = self.reaching(part.home, None);
         for (cells, count) in self.leaves(part) {
             for number in 0..count {
                 let pick = part.pick.inside(&mut self.logic, count, number);

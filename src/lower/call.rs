@@ -237,7 +237,9 @@ impl<'a> Lowering<'a> {
         let slots = self.slots;
         let Some(frame) = slots.functions.get(&unit) else { unreachable!("a function that is called has a frame") };
         let declared = self.checked.unit(unit);
-        let own = |lowering: &Self, id: VariableId| lowering.own(frame, Pick::Constant(0), id).of_function();
+        let own = |lowering: &Self, id: VariableId| {
+            lowering.own(frame, Pick::Constant(0), id).of_function(lowering.guard.functions())
+        };
         let caller = self.enter_function(enabled);
         for id in declared.variables().filter(|id| frame.get(*id).is_some()) {
             let variable = own(self, id);

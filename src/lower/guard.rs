@@ -8,7 +8,7 @@
 //! execution goes on: of a program, whose rungs may lie in several chunks, in a hidden slot, else in a value.
 //!
 //! A function in an expression gives its value also where the expression is computed for nothing: its own variables are
-//! written as if it were executed, and only what it does elsewhere is under the guard of its call, which is `outside`.
+//! written as if it were executed, and only what it does elsewhere is under the guard of its call, which is in `calls`.
 
 use super::Lowering;
 use crate::check::RungIndex;
@@ -21,8 +21,8 @@ pub(super) struct Guard {
     /// Whether what comes now is executed; `None` where it always is. A value of this section, since none crosses a
     /// chunk.
     live: Option<ValueId>,
-    /// The guard of the call, in a function.
-    outside: Option<ValueId>,
+    /// In functions that are called within each other: the guard of each call, in the function that makes it.
+    calls: Vec<Option<ValueId>>,
     /// What is being executed, the outermost first.
     scopes: Vec<Scope>,
 }
@@ -59,9 +59,9 @@ enum GoesOn {
 }
 
 impl Guard {
-    /// Whether what is lowered stands in a function whose call may be computed for nothing.
-    pub(super) fn is_in_function(&self) -> bool {
-        self.outside.is_some()
+    /// How many functions that are called within each other what is lowered stands in.
+    pub(super) fn functions(&self) -> usize {
+        self.calls.len()
     }
 }
 
@@ -87,7 +87,9 @@ impl Lowering<'_> {
 
     /// Starts a function that is called, under a condition if there is one. Gives the guard to come back to.
     pub(super) fn enter_function(&mut self, enabled: Option<ValueId>) -> Guard {
-        let guard = Guard { outside: self.effective(enabled), ..Guard::default() };
+        let mut calls = self.guard.calls.clone();
+        calls.push(self.executed(enabled));
+        let guard = Guard { calls, ..Guard::default() };
         let caller = std::mem::replace(&mut self.guard, guard);
         self.enter(Kind::Unit { goes_on: GoesOn::Value(None), furthest: None });
         caller
@@ -135,8 +137,17 @@ impl Lowering<'_> {
 
     /// The same for what has an effect outside of a function.
     pub(super) fn effective(&mut self, condition: Option<ValueId>) -> Option<ValueId> {
-        let executed = self.executed(condition);
-        self.both(self.guard.outside, executed)
+        self.reaching(0, condition)
+    }
+
+    /// The same for what writes the own of one of the functions that are called within each other: it is under the guards of
+    /// the calls from there on.
+    pub(super) fn reaching(&mut self, home: usize, condition: Option<ValueId>) -> Option<ValueId> {
+        let mut reaching = self.executed(condition);
+        for call in home..self.guard.calls.len() {
+            reaching = self.both(self.guard.calls[call], reaching);
+        }
+        reaching
     }
 
     /// At the start of a rung: jumps to it end here, those to later ones lead over it.

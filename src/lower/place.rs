@@ -18,8 +18,9 @@ pub(super) struct Part<'a> {
     pub(super) ty: Type,
     pub(super) pick: Pick,
     bit: Option<u8>,
-    /// Whether it is a function's own, so that writing it is no effect elsewhere.
-    pub(super) local: bool,
+    /// Whose own it is: of how many functions that are called within each other the last; 0 where it is no function's. What
+    /// writes it in a function called further within is under the guards of those calls.
+    pub(super) home: usize,
 }
 
 /// What lies there.
@@ -34,19 +35,19 @@ pub(super) enum Node<'a> {
 pub(super) struct Spot {
     pub(super) cell: Cell,
     bit: Option<u8>,
-    /// Whether it is a function's own.
-    pub(super) local: bool,
+    /// As [`Part::home`].
+    pub(super) home: usize,
 }
 
 impl<'a> Part<'a> {
     /// A whole variable.
     pub(super) fn new(storage: &'a Storage, ty: Type, pick: Pick) -> Self {
-        Self { node: Node::Storage(storage), ty, pick, bit: None, local: false }
+        Self { node: Node::Storage(storage), ty, pick, bit: None, home: 0 }
     }
 
-    /// The same as a function's own.
-    pub(super) fn of_function(self) -> Self {
-        Self { local: true, ..self }
+    /// The same as the own of a function that is called within others, that one counted.
+    pub(super) fn of_function(self, home: usize) -> Self {
+        Self { home, ..self }
     }
 
     /// A pin of it.
@@ -66,7 +67,7 @@ impl<'a> Part<'a> {
             Node::Storage(Storage::Value(cells)) => *cells,
             Node::Storage(_) => return None,
         };
-        Some(Spot { cell: Cell { cells, pick: self.pick }, bit: self.bit, local: self.local })
+        Some(Spot { cell: Cell { cells, pick: self.pick }, bit: self.bit, home: self.home })
     }
 
     /// The value that it is.
@@ -100,12 +101,15 @@ impl<'a> Lowering<'a> {
         if let Some((_, part)) = self.unit.references.iter().find(|(reference, _)| *reference == id) {
             return *part;
         }
-        let own = self.unit.frame.get(id).map(|storage| (storage, self.unit.pick, self.unit.is_function));
-        let elsewhere = || self.elsewhere(id).map(|storage| (storage, Pick::Constant(0), false));
-        let Some((storage, pick, local)) = own.or_else(elsewhere) else {
+        let own =
+            self.unit.frame.get(id).map(|storage| {
+                (storage, self.unit.pick, if self.unit.is_function { self.guard.functions() } else { 0 })
+            });
+        let elsewhere = || self.elsewhere(id).map(|storage| (storage, Pick::Constant(0), 0));
+        let Some((storage, pick, home)) = own.or_else(elsewhere) else {
             unreachable!("checking lets a unit name its own variables and the global ones")
         };
-        Part { local, ..Part::new(storage, self.checked.variable(id).ty, pick) }
+        Part { home, ..Part::new(storage, self.checked.variable(id).ty, pick) }
     }
 
     /// What is global: so declared, or at an address.
@@ -226,7 +230,7 @@ impl<'a> Lowering<'a> {
                 self.logic.select(value, with, without)
             }
         };
-        let condition = if spot.local { self.executed(condition) } else { self.effective(condition) };
+        let condition = self.reaching(spot.home, condition);
         spot.cell.store(&mut self.logic, condition, value);
         self.forget(spot.cell.cells);
     }

@@ -147,7 +147,7 @@ impl Lowering<'_> {
         let in_range = self.end(outer);
         self.note_failure(in_range, None);
         // What a function writes elsewhere is perhaps not written.
-        if let Some(slot) = spot.slot().filter(|_| spot.local || !self.guard.is_in_function()) {
+        if let Some(slot) = spot.slot().filter(|_| spot.home == self.guard.functions()) {
             self.counters.push(Counter { slot, value: Some(value) });
         }
     }

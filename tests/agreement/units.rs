@@ -455,3 +455,29 @@ rung
          2  2 | 0 0 1",
     );
 }
+
+#[test]
+fn a_function_that_is_not_enabled_leaves_what_its_caller_gave_it() {
+    follows(
+        "function inner
+inout x : BOOL
+var off : BOOL
+rung {x := off}
+function outer : BOOL
+input e
+var flag : BOOL := TRUE
+rung
+  inner(EN := e, x := flag)
+rung {outer := flag}
+program p
+input e
+output q, r
+rung
+  outer(e := e, OUT => q)
+rung {r := outer(e)}",
+        "ms e | q r
+         0  0 | 1 1
+         1  1 | 0 0
+         2  0 | 1 1",
+    );
+}
