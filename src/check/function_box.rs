@@ -76,7 +76,7 @@ impl Boxed {
                     Some(Wire::Value(condition)) => vec![model::Element::Condition(condition)],
                     _ => Vec::new(),
                 };
-                elements.push(model::Element::Statements(vec![Statement::Copy { target, source }]));
+                elements.push(model::Element::Statements(vec![Statement::Copy { target, source, done: None }]));
                 let coil = |target| model::Element::Coil { kind: ladder::CoilKind::Plain, target };
                 elements.extend(enabled.map(coil));
                 model::Element::Parallel(Circuit { branches: vec![Branch { from: None, elements, to: None }] })
@@ -90,15 +90,11 @@ impl Boxed {
             Self::Call(call) => Statement::Call(*call),
             Self::Copy(copied) => {
                 let Copied { enable, target, source, enabled } = *copied;
-                let constant = |value| constant_expression(Value::bool(value));
-                let done =
-                    |value| enabled.clone().map(|target| Statement::Assignment { target, value: constant(value) });
-                let condition = match enable {
-                    Some(Wire::Value(condition)) => condition,
-                    _ => constant(true),
-                };
-                let body = [Statement::Copy { target, source }].into_iter().chain(done(true)).collect();
-                Statement::If { branches: vec![(condition, body)], otherwise: done(false).into_iter().collect() }
+                let copy = Statement::Copy { target, source, done: enabled.clone() };
+                let Some(Wire::Value(condition)) = enable else { return copy };
+                let value = constant_expression(Value::bool(false));
+                let otherwise = enabled.map(|target| Statement::Assignment { target, value });
+                Statement::If { branches: vec![(condition, vec![copy])], otherwise: otherwise.into_iter().collect() }
             }
         }
     }

@@ -551,6 +551,8 @@ pub enum Statement {
         target: Place,
         /// What it gets, of the same type.
         source: Place,
+        /// A BOOL that is set to whether all indices were in range.
+        done: Option<Place>,
     },
     /// Calls.
     Call(Call),

@@ -73,7 +73,7 @@ impl Checker<'_> {
             Type::Array(_) | Type::Structure(_) if !self.types.holds_instance(ty) => {
                 let source = self.source(value, ty)?;
                 self.weigh_copy(ty, [&source, &place], value.span);
-                Some(Statement::Copy { target: place, source })
+                Some(Statement::Copy { target: place, source, done: None })
             }
             _ => {
                 let message = format!("{} cannot be assigned to", types::with_article(&self.type_name(ty)));

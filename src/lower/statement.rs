@@ -48,12 +48,17 @@ impl Lowering<'_> {
                 let in_range = self.end(outer);
                 self.note_failure(in_range, None);
             }
-            Statement::Copy { target, source } => {
+            Statement::Copy { target, source, done } => {
                 let outer = self.begin(None);
                 let source = self.part(source);
                 let target = self.part(target);
+                let done = done.as_ref().map(|done| self.spot(done));
                 self.copy(target, source, None);
                 let in_range = self.end(outer);
+                if let Some(done) = done {
+                    let in_range = in_range.unwrap_or_else(|| self.logic.bool(true));
+                    self.store(done, in_range, None);
+                }
                 self.note_failure(in_range, None);
             }
             Statement::Call(call) => {

@@ -104,7 +104,10 @@ impl Walk<'_> {
                     self.place(target);
                     self.expression(value);
                 }
-                Statement::Copy { target, source } => {
+                Statement::Copy { target, source, done } => {
+                    if let Some(done) = done {
+                        self.place(done);
+                    }
                     self.alias(target);
                     self.alias(source);
                 }

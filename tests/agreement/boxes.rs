@@ -139,3 +139,23 @@ rung
          1  1 4  | 4  9  9",
     );
 }
+
+#[test]
+fn a_statement_that_moves_a_whole_row_says_whether_there_is_one() {
+    follows(
+        "type row : array [0..1] of INT
+program p
+input i : INT
+input e
+var rows : array [0..1] of row
+var one : row := [7, 8]
+output ok
+rung
+  {MOVE(EN := e, IN := one, OUT => rows[i], ENO => ok);}",
+        "ms i e | ok rows[1][0]
+         0  1 1 | 1  7
+         1  2 1 | 0  7
+         2  1 0 | 0  7
+         3  0 1 | 1  7",
+    );
+}

@@ -37,33 +37,11 @@ pub fn recognises(text: &str) -> bool {
                     return false;
                 }
             }
-            Kind::Keyword(found) if is_of_structured_text_alone(found) => return true,
+            Kind::Keyword(found) if found.is_of_structured_text_alone() => return true,
             _ => {}
         }
         before = token;
     }
-}
-
-fn is_of_structured_text_alone(keyword: Keyword) -> bool {
-    use Keyword as K;
-    matches!(
-        keyword,
-        K::VarInput
-            | K::VarOutput
-            | K::VarInOut
-            | K::VarTemp
-            | K::VarGlobal
-            | K::VarExternal
-            | K::EndVar
-            | K::EndType
-            | K::EndProgram
-            | K::EndFunction
-            | K::EndFunctionBlock
-            | K::Configuration
-            | K::EndConfiguration
-            | K::Resource
-            | K::EndResource
-    )
 }
 
 #[cfg(test)]

@@ -112,39 +112,26 @@ impl Kind {
         use Keyword as K;
         match self {
             Self::End => true,
-            Self::Keyword(keyword) => matches!(
-                keyword,
-                K::Program
-                    | K::Function
-                    | K::FunctionBlock
-                    | K::Type
-                    | K::Task
-                    | K::Input
-                    | K::Output
-                    | K::InOut
-                    | K::Temp
-                    | K::Var
-                    | K::Const
-                    | K::Global
-                    | K::Registers
-                    | K::Imported
-                    | K::Rung
-                    | K::VarInput
-                    | K::VarOutput
-                    | K::VarInOut
-                    | K::VarTemp
-                    | K::VarGlobal
-                    | K::VarExternal
-                    | K::EndVar
-                    | K::EndType
-                    | K::EndProgram
-                    | K::EndFunction
-                    | K::EndFunctionBlock
-                    | K::Configuration
-                    | K::EndConfiguration
-                    | K::Resource
-                    | K::EndResource
-            ),
+            Self::Keyword(keyword) => {
+                matches!(
+                    keyword,
+                    K::Program
+                        | K::Function
+                        | K::FunctionBlock
+                        | K::Type
+                        | K::Task
+                        | K::Input
+                        | K::Output
+                        | K::InOut
+                        | K::Temp
+                        | K::Var
+                        | K::Const
+                        | K::Global
+                        | K::Registers
+                        | K::Imported
+                        | K::Rung
+                ) || keyword.is_of_structured_text_alone()
+            }
             _ => false,
         }
     }
@@ -300,4 +287,27 @@ pub(crate) fn continues_name(character: char) -> bool {
 /// Whether a name needs no back quotes in the native text.
 pub(crate) fn is_plain_name(text: &str) -> bool {
     text.starts_with(starts_name) && text.chars().all(continues_name) && keyword(text, Dialect::Native).is_none()
+}
+impl Keyword {
+    /// Whether only structured text has it, and it starts or ends a declaration or unit there.
+    pub(crate) const fn is_of_structured_text_alone(self) -> bool {
+        matches!(
+            self,
+            Self::VarInput
+                | Self::VarOutput
+                | Self::VarInOut
+                | Self::VarTemp
+                | Self::VarGlobal
+                | Self::VarExternal
+                | Self::EndVar
+                | Self::EndType
+                | Self::EndProgram
+                | Self::EndFunction
+                | Self::EndFunctionBlock
+                | Self::Configuration
+                | Self::EndConfiguration
+                | Self::Resource
+                | Self::EndResource
+        )
+    }
 }

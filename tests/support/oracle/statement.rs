@@ -27,10 +27,16 @@ impl Oracle<'_> {
                 self.put(&target, value);
                 self.did(walk, statement, "statement a := b");
             }
-            Statement::Copy { target, source } => {
+            Statement::Copy { target, source, done } => {
+                let failed = std::mem::replace(&mut attempt.failed, false);
                 let source = self.locate(&walk.frame, source, attempt);
                 let target = self.locate(&walk.frame, target, attempt);
+                let done = done.as_ref().map(|done| self.locate(&walk.frame, done, attempt));
                 self.put_copy(&target, &source);
+                if let Some(done) = done {
+                    self.put(&done, Value::bool(!attempt.failed));
+                }
+                attempt.failed |= failed;
                 self.did(walk, statement, "statement a := b of many");
             }
             Statement::Call(call) => {
