@@ -7,9 +7,10 @@
 //!    initial values.
 //! 2. `collect`: what the rungs declare by use (instances, addresses, registers), and how deep they nest.
 //! 3. `address`: which addresses share storage, and which overlap.
-//! 4. `network`, `jump`, `block`, `pins`, `statement`, `place`, `expression`, `function`, `constant`, `fold`: the rungs, element by
-//!    element.
-//! 5. `usage`, `unit`: what only the whole program shows, such as unused names, double coils, and calls in a circle.
+//! 4. `network`, `jump`, `block`, `pins`, `function_box`, `user_function`, `register`, `statement`, `place`, `expression`, `function`,
+//!    `constant`, `fold`: the rungs, element by element.
+//! 5. `usage`, `unit`, `size`: what only the whole program shows, such as unused names, double coils, calls in a circle, and what is
+//!    too large once it is written out.
 //! 6. `configuration`: tasks, program instances and the register machine.
 //!
 //! Rungs that are off are checked like the others, and what they name counts as used; but they are not in the

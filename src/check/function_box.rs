@@ -264,11 +264,20 @@ impl Checker<'_> {
         if let Some(Given::Whole(..)) = wired.inputs.get(&0) {
             return self.whole_move(call, *wired);
         }
-        let actuals = self.box_actuals(function, name, &mut wired.inputs)?;
+        let mut actuals = self.box_actuals(function, name, &mut wired.inputs)?;
         let result = wired.outputs.iter().find_map(|(output, _, ty, _)| match (output, ty) {
             (Output::Pin(_), Type::Elementary(ty)) => Some(*ty),
             _ => None,
         });
+        // What MOVE moves may be widened, as what is assigned may.
+        if let (Function::Standard(StandardFunction::Move), Some(to), [actual]) =
+            (function, result, actuals.as_mut_slice())
+            && let Some(Operand::Typed(model::Expression { ty: from, .. })) = &actual.operand
+            && types::widens(*from, to)
+            && let Some(operand) = actual.operand.take()
+        {
+            actual.operand = Some(Operand::Typed(self.coerce(operand, to, actual.span)?));
+        }
         let (function, operands, ty) = self.typed_call(function, name, actuals, result)?;
         if let (Function::Standard(StandardFunction::Divide | StandardFunction::Modulo), [_, (divisor, span)]) =
             (function, operands.as_slice())

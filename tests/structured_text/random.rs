@@ -6,7 +6,7 @@ use rung::frontend::{self, native, structured_text};
 use rung::ladder::Program;
 use rung::source::Source;
 
-use crate::support::random_program::random_program;
+use crate::support::random_program::random_iec_program;
 use crate::support::same_trace::same_trace;
 use crate::support::shrink;
 
@@ -44,7 +44,10 @@ fn problem(program: &Program, seed: u64) -> Option<String> {
         return Some(format!("{}{}{text}", render(&source, &parsed.diagnostics), render(&source, &errors)));
     };
     // A name that IEC 61131-3 has not is another one there, and stands in a comment behind its declaration.
-    let is_kept = |name: &str| !text.contains(&format!("; (* {name} *)"));
+    let is_kept = |name: &str| {
+        let own = name.split_once('.').map_or(name, |(_, own)| own);
+        [name, own].iter().all(|name| !text.contains(&format!("; (* {name} *)")))
+    };
     same_trace(&drawn, &again, seed, 100, is_kept).err().map(|difference| format!("{difference}\n{text}"))
 }
 
@@ -52,15 +55,15 @@ fn problem(program: &Program, seed: u64) -> Option<String> {
 fn a_random_program_read_again_from_structured_text_has_the_same_trace() {
     let mut compared = 0;
     for seed in seeds() {
-        let Some(program) = writable(random_program(seed)) else { continue };
+        let Some(program) = writable(random_iec_program(seed)) else { continue };
         if problem(&program, seed).is_some() {
             let small = shrink::smallest(&program, |smaller| problem(smaller, seed).is_some());
             panic!("seed {seed}: {}\n{}", problem(&small, seed).unwrap_or_default(), native::print(&small));
         }
         compared += 1;
     }
-    // Of 1000 seeds, 52 give one; the others use what structured text has not, such as the register machine.
-    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared >= 50, "only {compared} programs could be written");
+    // Of 1000 seeds, 499 give one; the others have in their declarations, or in every rung, what structured text has not.
+    assert!(std::env::var("RUNG_SEEDS").is_ok() || compared >= 450, "only {compared} programs could be written");
 }
 
 /// The seeds; `RUNG_FIRST_SEED=17 RUNG_SEEDS=1` looks at one again.

@@ -119,3 +119,27 @@ fn power_behind_a_moved_array_that_an_index_decides_is_refused() {
         is_refused(&format!("{before}rung\n  {rung}\n"));
     }
 }
+
+#[test]
+fn a_not_without_a_place_for_its_result_is_refused() {
+    is_refused("program p\ninput a\noutput q\nrung\n  a {`NOT`(IN := a); q := a;}\n");
+}
+
+#[test]
+fn an_index_in_a_circuit_at_a_pin_does_not_take_eno_away() {
+    comes_back(
+        "program p\ninput n : INT\noutput q\nvar c : CTD\nvar y : array [0..2] of BOOL\n\
+         rung\n  c(LD := [ y[n] ], PV := 3).ENO (S q)\n",
+    );
+}
+
+#[test]
+fn an_input_that_enable_reads_is_set_though_the_call_is_not_enabled() {
+    let written = comes_back("program p\ninput a\nvar c : CTU\nrung\n  a c(EN := c.CU, PV := 2)\n");
+    assert!(written.contains("EN := "), "{written}");
+}
+
+#[test]
+fn eno_and_an_output_that_go_to_one_variable_are_refused() {
+    is_refused("program p\ninput a\noutput q\nvar c : CTU\nrung\n  a c(CU := a, PV := 2, ENO => q, Q => q)\n");
+}

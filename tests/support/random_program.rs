@@ -25,11 +25,21 @@ use super::dice::Dice;
 use super::drawing;
 use shape::{Shape, Way};
 
-/// The program of a seed.
+/// The program of a seed, over the whole language.
 pub(crate) fn random_program(seed: u64) -> Program {
+    drawn(seed, true)
+}
+
+/// The program of a seed, without the register machine, which other tools have not.
+pub(crate) fn random_iec_program(seed: u64) -> Program {
+    drawn(seed, false)
+}
+
+fn drawn(seed: u64, register_machine: bool) -> Program {
     let program = Program { units: Vec::new(), ..drawing::program("random") };
     let mut generator = Generator {
         dice: Dice::new(seed, 1),
+        register_machine,
         unit: unit::empty(),
         program,
         value_types: Vec::new(),
@@ -123,6 +133,8 @@ struct Instance {
 
 struct Generator {
     dice: Dice,
+    /// Whether its blocks and registers are drawn, too.
+    register_machine: bool,
     program: Program,
     /// What is being drawn.
     unit: Unit,

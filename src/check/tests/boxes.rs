@@ -222,3 +222,12 @@ fn in_a_statement_arguments_without_names_stand_in_their_places() {
     let too_many = found(&format!("{BEFORE}var t1 : TON\nrung {{t1(_e, T#1s, 3);}}"));
     assert_eq!(too_many.iter().map(|(code, _)| *code).collect::<Vec<_>>(), [Code::UnknownPin]);
 }
+
+#[test]
+fn what_is_moved_may_be_widened_as_what_is_assigned_may() {
+    let checked = clean(&format!("{BEFORE}rung MOVE(IN := _a, OUT => _d)"));
+    assert_eq!(call(&checked).callee, of(StandardFunction::Move, Elementary::Dint));
+    let codes: Vec<Code> =
+        found(&format!("{BEFORE}rung MOVE(IN := _d, OUT => _a)")).iter().map(|(code, _)| *code).collect();
+    assert_eq!(codes, [Code::TypeMismatch]);
+}

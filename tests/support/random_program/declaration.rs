@@ -27,6 +27,9 @@ const ADDRESSES: [At; 9] = {
     ]
 };
 
+/// The blocks of the register machine.
+const MACHINE: [&str; 9] = ["TT", "TS", "UC", "DC", "DR", "SHIFTL", "SHIFTR", "BS", "BC"];
+
 impl Generator {
     /// The variables of a program, of which the first has most.
     pub(super) fn declare(&mut self, number: usize) {
@@ -72,7 +75,9 @@ impl Generator {
                 let (name, ty) = (format!("own_{number}"), own.name.clone());
                 self.declare_instance(&name, &ty, &Kind::Own(own));
             } else {
-                let block = *self.dice.pick(StandardBlock::ALL);
+                let known = |block: &StandardBlock| self.register_machine || !MACHINE.contains(&block.name());
+                let blocks: Vec<StandardBlock> = StandardBlock::ALL.iter().copied().filter(known).collect();
+                let block = *self.dice.pick(&blocks);
                 let name = format!("{}_{number}", block.name().to_lowercase());
                 self.declare_instance(&name, block.name(), &Kind::Standard(block));
             }

@@ -41,7 +41,7 @@ impl Generator {
         for number in 0..programs {
             self.program_unit(number, &globals, &wholes);
         }
-        if programs > 1 || !self.blocks.is_empty() {
+        if self.register_machine && (programs > 1 || !self.blocks.is_empty()) {
             // Instances in instances may be more than the register machine has unless told.
             let limits = ["timers", "drums", "shifts"].map(|name| setting(name, 5000));
             let registers = self.program.registers.get_or_insert(Registers { settings: Vec::new(), span: NOWHERE });
@@ -174,7 +174,7 @@ impl Generator {
 
     fn declare_globals(&mut self) {
         use VariableClass::{Constant, Memory};
-        if self.dice.percent(40) {
+        if self.register_machine && self.dice.percent(40) {
             let counts = [4, 5, 6].map(|most| self.dice.between(1, most));
             let settings = vec![setting("ireg", counts[0]), setting("oreg", counts[1]), setting("hreg", counts[2])];
             self.program.registers = Some(Registers { settings, span: NOWHERE });
@@ -185,7 +185,7 @@ impl Generator {
                 let shape = Shape::Array(vec![bounds], Box::new(Shape::Value(Elementary::Word)));
                 self.add_name(name, &shape, *class);
             }
-        } else if self.dice.percent(30) {
+        } else if self.register_machine && self.dice.percent(30) {
             for (name, class) in [("oreg", VariableClass::Output), ("hreg", Memory)] {
                 let root = rung::ladder::Root::Name(drawing::name(name));
                 self.scope.push(Entry { root, way: vec![Way::Register(6)], ty: Elementary::Word, class });

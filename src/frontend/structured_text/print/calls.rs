@@ -53,6 +53,9 @@ struct PowerPins {
 impl Rungs<'_> {
     /// A box; gives the power on its right.
     pub(super) fn block(&mut self, call: &BlockCall, left: Power, needed: bool, span: Span) -> Power {
+        if self.writes_beside_eno(call) {
+            self.problem(call.instance.span, "ENO and another output of this box go to one variable");
+        }
         if self.is_function(call) {
             return self.function_box(call, left, needed);
         }
@@ -80,7 +83,8 @@ impl Rungs<'_> {
         }
         self.spill(&Change::All);
         let is_conditional = !matches!(enabled, Power::Always);
-        let enabled_by_pin = is_conditional && !pins.has_enable && (can_fail || self.keeps_inputs(call));
+        let enabled_by_pin =
+            is_conditional && !pins.has_enable && (can_fail || self.keeps_inputs(call, feeds.as_deref()));
         if enabled_by_pin {
             arguments.insert(0, format!("EN := {}", self.words().expression(&enabled.expression())));
         }
@@ -116,12 +120,23 @@ impl Rungs<'_> {
         }
     }
 
+    /// Whether ENO goes where another output goes, too: which of the two is written last cannot be said.
+    pub(super) fn writes_beside_eno(&self, call: &BlockCall) -> bool {
+        let target = |argument: &Argument| match &argument.wire {
+            Wire::Output(target) => Some(key(&self.words().reference(target))),
+            _ => None,
+        };
+        let Some(eno) = pin(call, "ENO").and_then(target) else { return false };
+        call.arguments.iter().filter(|argument| target(argument).as_ref() == Some(&eno)).count() > 1
+    }
+
     /// Whether it can be seen that the inputs of a call are set although it is not enabled: something reads one, or another call
     /// leaves it as it is. Where nobody can see it, an IF around the call says the same to more compilers.
-    fn keeps_inputs(&self, call: &BlockCall) -> bool {
+    fn keeps_inputs(&self, call: &BlockCall, fed: Option<&str>) -> bool {
         let Root::Name(instance) = &call.instance.root else { return true };
         let Some(mentions) = self.mentions.get(&instance.key()) else { return false };
-        mentions.count > 1 || call.arguments.iter().any(|argument| mentions.members.contains(&argument.pin.key()))
+        let mut pins = call.arguments.iter().map(|argument| argument.pin.key()).chain(fed.map(key));
+        mentions.count > 1 || pins.any(|pin| mentions.members.contains(&pin))
     }
 
     /// The arguments of a block in words, in their order, with the power on the left and on EN when all are computed.
@@ -148,6 +163,7 @@ impl Rungs<'_> {
                         );
                     }
                     let power = rungs.circuit(circuit, Power::Always, true);
+                    let power = rungs.settled(power);
                     rungs.live_push(power);
                     circuits += 1;
                 } else {
@@ -180,6 +196,18 @@ impl Rungs<'_> {
         (left, enable)
     }
 
+    /// The power of a circuit at a pin, in a variable if it depends on a computed index: an index in a circuit is not one at the pin,
+    /// which ENO would tell of.
+    fn settled(&mut self, power: Power) -> Power {
+        if !is_computed_power(&power) {
+            return power;
+        }
+        let variable = self.temporary();
+        let value = self.words().expression(&power.expression());
+        self.line(&format!("{variable} := {value};"));
+        Power::of_variable(&variable)
+    }
+
     /// Whether a circuit may write the inputs of an instance.
     fn reaches(&self, circuit: &Circuit, instance: &Reference) -> bool {
         let Root::Name(name) = &instance.root else { return true };
@@ -205,7 +233,10 @@ impl Rungs<'_> {
                         "what this circuit does would come before the pins that stand before it",
                     );
                 }
-                let (kept, power) = self.keeping(left, |rungs| rungs.circuit(circuit, Power::Always, true));
+                let (kept, power) = self.keeping(left, |rungs| {
+                    let power = rungs.circuit(circuit, Power::Always, true);
+                    rungs.settled(power)
+                });
                 left = kept;
                 argument.wire = Wire::Value(power.expression());
             }

@@ -492,6 +492,13 @@ impl<'a> Rungs<'a> {
             self.problem(span, message);
         }
         uses::calls(list, &mut |call| {
+            let is_not = call.instance.as_name().is_some_and(|name| name.key() == "not");
+            if is_not && self.is_function(call) && pin(call, "OUT").is_none() && pin(call, "NOT").is_none() {
+                self.problem(call.instance.span, "a NOT whose result goes nowhere is no statement there");
+            }
+            if self.writes_beside_eno(call) {
+                self.problem(call.instance.span, "ENO and another output of this box go to one variable");
+            }
             if self.is_function(call)
                 && let (Some(enable), Some(eno)) = (pin(call, "EN"), pin(call, "ENO"))
                 && (is_computed(enable) || is_computed(eno))
