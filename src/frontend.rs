@@ -12,6 +12,7 @@ pub mod openplc;
 pub mod plcopen;
 pub mod structured_text;
 mod text;
+mod uses;
 
 pub use leave_out::leave_out;
 

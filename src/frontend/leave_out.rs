@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 
 use super::missing::Missing;
-use super::structured_text::print::uses::{self, Use};
+use super::uses::{self, Use};
 use crate::diagnostic::Diagnostic;
 use crate::elementary::Elementary;
 use crate::ladder::functions::Function;

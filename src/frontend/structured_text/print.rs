@@ -10,7 +10,6 @@ mod names;
 mod order;
 mod power;
 mod rungs;
-pub(in crate::frontend) mod uses;
 mod words;
 
 pub(in crate::frontend) use calls::is_iec;

@@ -6,7 +6,8 @@ use super::drawing::{Drawing, Input, Point, Shape, Source, width_of};
 use super::order::{Step, Touched, is_kept};
 use super::pins::{self, Callee, Scope};
 use crate::frontend::graph::types::Signatures;
-use crate::frontend::structured_text::print::{Words, uses};
+use crate::frontend::structured_text::print::Words;
+use crate::frontend::uses;
 use crate::ladder::{
     Argument, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Program,
     Reference, Root, Rung, Unit, Wire,

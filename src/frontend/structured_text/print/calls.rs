@@ -2,9 +2,9 @@
 
 use super::power::{Change, Power};
 use super::rungs::{Rungs, conducts};
-use super::uses;
 use super::words::pin;
 use crate::elementary::Elementary;
+use crate::frontend::uses;
 use crate::ladder::functions::{Function, StandardFunction};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{

@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use super::calls::is_iec;
 use super::names::Names;
-use super::uses::{self, Use};
 use super::words::Words;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::uses::{self, Use};
 use crate::ladder::library::StandardBlock;
 use crate::ladder::{Expression, Program, TypeKind, Unit, UnitKind, Variable, VariableClass, key};
 

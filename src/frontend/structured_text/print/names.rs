@@ -138,7 +138,7 @@ impl Names {
             declared.push(&unit.name);
             declared.extend(unit.variables.iter().map(|variable| &variable.name));
         }
-        super::uses::blocks_declared_by_use(program, &mut |name| declared.push(name));
+        crate::frontend::uses::blocks_declared_by_use(program, &mut |name| declared.push(name));
         let taken = declared.iter().map(|name| name.key()).collect();
         let mut names = Self { renamed: HashMap::new(), taken, numbers: HashMap::new() };
         for name in declared {

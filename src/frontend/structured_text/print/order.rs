@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::uses::{self, Use};
+use crate::frontend::uses::{self, Use};
 use crate::ladder::{Program, Unit, UnitKind};
 
 /// The places of functions and function blocks, each behind those that it uses, and then of the programs as they stand.

@@ -1,6 +1,6 @@
 //! The power at a point of a rung, as an expression that is not computed yet.
 
-use super::uses::{self, Use};
+use crate::frontend::uses::{self, Use};
 use crate::ladder::functions::Function;
 use crate::ladder::{BinaryOperator, Expression, ExpressionKind, Literal, Name, Reference, Root, Step, UnaryOperator};
 use crate::source::Span;

@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::calls::{ENO_OF_INDEX, is_computed};
 use super::names::Names;
 use super::power::{Change, HIGHEST, Power, depends, read};
-use super::uses;
 use super::words::{Words, pin};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
+use crate::frontend::uses;
 use crate::ladder::Step;
 use crate::ladder::{
     Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind, Name, Program, Reference,

@@ -7,7 +7,7 @@ use crate::ladder::{
 
 /// Something that is mentioned.
 #[derive(Clone, Copy)]
-pub(in crate::frontend) enum Use<'a> {
+pub(super) enum Use<'a> {
     /// A variable, read or written, or an instance that is called.
     Reference(&'a Reference),
     /// A function in an expression.
@@ -16,10 +16,10 @@ pub(in crate::frontend) enum Use<'a> {
     Block(&'a Name, &'a Reference),
 }
 
-pub(in crate::frontend) type Visit<'v, 'a> = &'v mut dyn FnMut(Use<'a>);
+pub(super) type Visit<'v, 'a> = &'v mut dyn FnMut(Use<'a>);
 
 /// The instances that no declaration but their call declares.
-pub(in crate::frontend) fn blocks_declared_by_use<'a>(program: &'a Program, visit: &mut dyn FnMut(&'a Name)) {
+pub(super) fn blocks_declared_by_use<'a>(program: &'a Program, visit: &mut dyn FnMut(&'a Name)) {
     for rung in program.rungs() {
         circuit(&rung.circuit, &mut |mentioned| {
             if let Use::Block(_, instance) = mentioned
@@ -31,11 +31,11 @@ pub(in crate::frontend) fn blocks_declared_by_use<'a>(program: &'a Program, visi
     }
 }
 
-pub(in crate::frontend) fn circuit<'a>(circuit_: &'a Circuit, visit: Visit<'_, 'a>) {
+pub(super) fn circuit<'a>(circuit_: &'a Circuit, visit: Visit<'_, 'a>) {
     circuit_.branches.iter().flat_map(|branch| &branch.elements).for_each(|one| element(one, visit));
 }
 
-pub(in crate::frontend) fn element<'a>(element: &'a Element, visit: Visit<'_, 'a>) {
+pub(super) fn element<'a>(element: &'a Element, visit: Visit<'_, 'a>) {
     match &element.kind {
         ElementKind::Contact { operand, .. } => expression(operand, visit),
         ElementKind::Coil { target, .. } => reference(target, visit),
@@ -51,7 +51,7 @@ pub(in crate::frontend) fn element<'a>(element: &'a Element, visit: Visit<'_, 'a
     }
 }
 
-pub(in crate::frontend) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
+pub(super) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
     reference(&call.instance, visit);
     if let Some(ty) = &call.type_name {
         visit(Use::Block(ty, &call.instance));
@@ -65,7 +65,7 @@ pub(in crate::frontend) fn call<'a>(call: &'a BlockCall, visit: Visit<'_, 'a>) {
     }
 }
 
-pub(in crate::frontend) fn statements<'a>(list: &'a [Statement], visit: Visit<'_, 'a>) {
+pub(super) fn statements<'a>(list: &'a [Statement], visit: Visit<'_, 'a>) {
     for statement in list {
         match &statement.kind {
             StatementKind::Assignment { target, value } => {
@@ -102,7 +102,7 @@ pub(in crate::frontend) fn statements<'a>(list: &'a [Statement], visit: Visit<'_
 }
 
 /// The calls among statements.
-pub(in crate::frontend) fn calls<'a>(list: &'a [Statement], visit: &mut dyn FnMut(&'a BlockCall)) {
+pub(super) fn calls<'a>(list: &'a [Statement], visit: &mut dyn FnMut(&'a BlockCall)) {
     for statement in list {
         match &statement.kind {
             StatementKind::Call(call) => visit(call),
@@ -120,7 +120,7 @@ pub(in crate::frontend) fn calls<'a>(list: &'a [Statement], visit: &mut dyn FnMu
     }
 }
 
-pub(in crate::frontend) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) {
+pub(super) fn expression<'a>(expression_: &'a Expression, visit: Visit<'_, 'a>) {
     match &expression_.kind {
         ExpressionKind::Literal(_) => {}
         ExpressionKind::Read(read) => reference(read, visit),
@@ -143,7 +143,7 @@ pub(in crate::frontend) fn expression<'a>(expression_: &'a Expression, visit: Vi
     }
 }
 
-pub(in crate::frontend) fn reference<'a>(reference: &'a Reference, visit: Visit<'_, 'a>) {
+pub(super) fn reference<'a>(reference: &'a Reference, visit: Visit<'_, 'a>) {
     visit(Use::Reference(reference));
     for step in &reference.steps {
         if let Step::Index(indices, _) = step {
@@ -153,7 +153,7 @@ pub(in crate::frontend) fn reference<'a>(reference: &'a Reference, visit: Visit<
 }
 
 /// Whether a mention depends on an index that is computed while the program runs.
-pub(in crate::frontend) fn has_computed_index(mentioned: Use<'_>) -> bool {
+pub(super) fn has_computed_index(mentioned: Use<'_>) -> bool {
     let Use::Reference(reference) = mentioned else { return false };
     let is_literal = |index: &Expression| match &index.kind {
         ExpressionKind::Unary(_, operand) => matches!(operand.kind, ExpressionKind::Literal(_)),
@@ -166,7 +166,7 @@ pub(in crate::frontend) fn has_computed_index(mentioned: Use<'_>) -> bool {
 }
 
 /// The key of the name that a mention starts with.
-pub(in crate::frontend) fn root_key(mentioned: Use<'_>) -> Option<String> {
+pub(super) fn root_key(mentioned: Use<'_>) -> Option<String> {
     match mentioned {
         Use::Reference(reference) => match &reference.root {
             Root::Name(name) => Some(name.key()),
