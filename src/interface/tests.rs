@@ -49,10 +49,10 @@ fn retained_and_input_bools_are_named_as_runs() {
     slot("total", Elementary::Lint, Area::Memory, true);
     slot("n", Elementary::Bool, Area::Memory, false);
     let layout = layout.finish(None).expect("a small image");
-    assert_eq!(input_bools(&layout), [0..2]);
+    assert_eq!(input_bools(&layout), vec![0..2]);
     // q and m lie side by side, then 8 bytes, aligned.
     assert_eq!(retain_offset(&layout), 4);
-    assert_eq!(retained_bools(&layout), [4..6]);
+    assert_eq!(retained_bools(&layout), vec![4..6]);
     assert_eq!(retain_size(&layout), 12);
     assert_eq!(image_size(&layout), layout.size() + 16);
 }
