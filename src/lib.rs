@@ -45,6 +45,7 @@ pub mod elementary;
 pub mod engine;
 pub mod frontend;
 pub mod generate;
+pub mod interface;
 pub mod ladder;
 pub mod load;
 pub mod logic;
