@@ -11,9 +11,11 @@ use crate::support::rig::checked;
 use crate::support::same_trace::same_trace;
 use crate::support::shrink;
 
-const FORMATS: [(&str, &str); 3] = [
+/// The PLCopen and the OpenPLC file are drawn as their editors save them, and not by Rung.
+const FORMATS: [(&str, &str); 4] = [
     ("native text", include_str!("one_program/station.rung")),
     ("PLCopen XML", include_str!("one_program/station.xml")),
+    ("OpenPLC Editor 4", include_str!("one_program/station.ld")),
     ("Structured Text", include_str!("one_program/station.st")),
 ];
 
