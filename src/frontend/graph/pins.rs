@@ -64,14 +64,13 @@ fn inputs(block: &mut Block, function: Function) {
     if !operands().all(|pin| numbered(&pin.name.text)) {
         return;
     }
-    let mut place = 0;
-    for pin in block.inputs.iter_mut().filter(|pin| !is_enable(&pin.name.text)) {
+    let pins = block.inputs.iter_mut().filter(|pin| !is_enable(&pin.name.text));
+    for (place, pin) in pins.enumerate() {
         let Some(known) = parameter(place) else { return };
         // Behind the listed ones they count on, from the number of the last one.
         let numbers = (place.saturating_sub(1)..=place + 1).map(|number| format!("IN{number}"));
         let name = [known.to_owned()].into_iter().chain(numbers).find(|name| place_of(name) == Some(place));
         pin.name.text = name.unwrap_or_else(|| known.to_owned());
-        place += 1;
     }
 }
 
