@@ -16,6 +16,7 @@ pub mod generate;
 pub mod ladder;
 pub mod logic;
 pub mod lower;
+pub mod mathematics;
 pub mod opt;
 pub mod replay;
 pub mod simulate;
