@@ -61,7 +61,8 @@ pub trait TruthValue:
 
 /// A way to compute, or to write down what is to be computed. All operations are total.
 ///
-/// The bits of a NaN that arithmetic made may be any; a function must not let a result other than a NaN depend on them.
+/// The bits of a NaN that arithmetic made may be any: no result other than a NaN may depend on them, and a NaN that is a
+/// result comes from arithmetic or is [`NAN`], never from bits.
 pub trait Arithmetic: Copy {
     /// LREALs.
     type Real: RealNumber;
@@ -92,6 +93,8 @@ pub trait Arithmetic: Copy {
     fn equal(self, a: Self::Real, b: Self::Real) -> Self::Flag;
     /// Whether `a` < `b` as integers without a sign.
     fn below(self, a: Self::Word, b: Self::Word) -> Self::Flag;
+    /// Whether a flag is known by now, and set: what does not count then may be left out. Nothing else may depend on it.
+    fn is_known(self, a: Self::Flag) -> bool;
     /// Whether any bit is set.
     fn any(self, a: Self::Word) -> Self::Flag;
     /// `a` while the condition holds, else `b`.

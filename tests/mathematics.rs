@@ -168,6 +168,11 @@ fn results_are_a_unit_in_the_last_place_from_those_of_another_library() {
         let (mut most, mut differ) = (0, 0_u32);
         for (a, b) in &operands {
             let (ours, theirs) = (evaluate::helper(*helper, *a, *b), reference(*helper, *a, *b));
+            // For exponents from 2^31 on the other one takes a short cut, see below.
+            if helper.takes_two() && b.abs() > 2.0_f64.powi(31) && ours.is_finite() && ours != 0.0 {
+                assert!((ours / theirs - 1.0).abs() < 1e-9, "{a:?} to the {b:?} is {ours:?}, elsewhere {theirs:?}");
+                continue;
+            }
             let distance = distance(ours, theirs);
             differ += u32::from(distance > 0);
             most = most.max(distance);
@@ -179,6 +184,24 @@ fn results_are_a_unit_in_the_last_place_from_those_of_another_library() {
             helper.mnemonic(),
             operands.len(),
         );
+    }
+}
+
+/// Results that were computed with 300 bits.
+#[test]
+fn powers_with_large_exponents_are_right() {
+    let cases = [
+        (1.0000002095572926, -2816986148.066565, 4.239478168163207e-257),
+        (1.000000055795379, -2262047684.0, 1.5378353760916323e-55),
+        (1.0000000039051713, -41271761913.0, 1.0076861948788545e-70),
+        (1.0000000001231673, -4506110115291.0, 9.210854586427503e-242),
+        (1.0000000000104312, -29833965243239.0, 7.008844136311173e-136),
+        (1.0000000000007054, 556000418084519.0, 2.188209867485151e+170),
+        (1.000000000000032, 4902390211786585.0, 1.1916186041579555e+68),
+    ];
+    for (base, exponent, expected) in cases {
+        let power = evaluate::helper(Helper::Power, base, exponent);
+        assert!(distance(power, expected) <= 1, "{base:?} to the {exponent:?} is {power:?}");
     }
 }
 
@@ -227,8 +250,8 @@ fn recorded_programs_give_the_same_bits_on_every_engine() {
             ("textbook", Box::new(Textbook::new(&program))),
             ("interp", Box::new(Interpreter::new(&program))),
             ("interp, optimised", Box::new(Interpreter::new(&optimised))),
-            ("jit", Box::new(Jit::new(&program).unwrap())),
-            ("jit, optimised", Box::new(Jit::new(&optimised).unwrap())),
+            ("jit", Box::new(Jit::compile(&program).unwrap())),
+            ("jit, optimised", Box::new(Jit::compile(&optimised).unwrap())),
         ];
         let all = operands(*helper, 3000);
         // Of all pairs of special operands some.
@@ -265,11 +288,11 @@ fn recorded_programs_are_one_section_without_a_call_and_nothing_idle() {
                 _ => operations += 1,
             }
         }
-        let chunk = &rung::engine::jit::compile(&program).unwrap()[0];
+        let compiled = Jit::compile(&program).unwrap();
         println!(
             "{:>5}: {operations} operations, {constants} constants and reinterpretations, {} bytes of code",
             helper.mnemonic(),
-            chunk.code.len(),
+            compiled.code_bytes(),
         );
     }
 }

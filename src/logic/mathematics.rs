@@ -13,7 +13,8 @@ use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 use super::{
-    Area, Binary, Builder, Compare, Helper, LayoutBuilder, Op, Origin, Program, Slot, SlotId, Unary, ValueId,
+    Area, Binary, Builder, Compare, Helper, Instruction, LayoutBuilder, Op, Origin, Program, Slot, SlotId, Unary,
+    ValueId,
 };
 use crate::elementary::{Elementary, Value};
 use crate::mathematics::{self, Arithmetic, BitWord, RealNumber, TruthValue};
@@ -42,7 +43,27 @@ pub fn program(helper: Helper) -> Program {
     let mut builder = recorder.state.into_inner().builder;
     builder.store(RESULT, result);
     builder.end_section(Origin { label: helper.mnemonic().to_owned(), line: 0 });
-    builder.finish()
+    without_idle(builder.finish())
+}
+
+/// The same program without what nothing uses, such as a constant that is only wanted as another type.
+fn without_idle(mut program: Program) -> Program {
+    let mut used = vec![false; program.instructions.len()];
+    for (index, Instruction { op, .. }) in program.instructions.iter().enumerate().rev() {
+        if used[index] || !op.has_value() {
+            used[index] = true;
+            op.operands().for_each(|operand| used[operand.index()] = true);
+        }
+    }
+    let mut next = 0;
+    let places: Vec<u32> = used.iter().map(|used| std::mem::replace(&mut next, next + u32::from(*used))).collect();
+    let all = std::mem::take(&mut program.instructions).into_iter().zip(used);
+    program.instructions = all
+        .filter(|(_, used)| *used)
+        .map(|(Instruction { ty, op }, _)| Instruction { ty, op: op.map_operands(|v| ValueId(places[v.index()])) })
+        .collect();
+    program.sections.iter_mut().for_each(|section| section.end = next);
+    program
 }
 
 fn record(m: &Recorder, helper: Helper) -> Recorded<'_, Real> {
@@ -215,6 +236,10 @@ impl<'a> Arithmetic for &'a Recorder {
         let mut state = self.state.borrow_mut();
         let [a, b] = [a, b].map(|word| state.word_as(Elementary::Lword, word.value));
         self.recorded(state.push(Elementary::Bool, Op::Compare(Compare::Less, a, b)))
+    }
+
+    fn is_known(self, _: Self::Flag) -> bool {
+        false
     }
 
     fn any(self, a: Self::Word) -> Self::Flag {

@@ -54,16 +54,17 @@ struct Reduced<A: Arithmetic> {
 #[inline(always)]
 fn reduced<A: Arithmetic>(m: A, size: A::Real) -> Reduced<A> {
     let large = m.at_most(m.real(QUARTER_PI[0]), size);
+    if m.is_known(!large) {
+        return Reduced { right_angles: m.word(0), high: size, low: m.real(0.0), sign: m.word(0) };
+    }
     let bits = m.bits(size);
     let integer = (bits & m.word(FRACTION)) | m.word(FRACTION + 1);
     let position = m.down(bits, m.word(52)) - m.word(FIRST_EXPONENT);
     let (right_angles, rest) = multiplied(m, integer, window(m, position));
-    let (negative, rest) = {
-        let mask = m.word(0) - m.down(rest[0], m.word(63));
-        // The complement is one less than the negative, of 2^128.
-        (mask & m.word(SIGN), rest.map(|word| word ^ mask))
-    };
-    let (high, low) = radians(m, rest);
+    // The magnitude of the rest; a complement is one less, of 2^128.
+    let mask = m.word(0) - m.down(rest[0], m.word(63));
+    let (high, low) = radians(m, rest.map(|word| word ^ mask));
+    let negative = mask & m.word(SIGN);
     Reduced {
         right_angles: m.choose_word(large, right_angles, m.word(0)),
         high: m.choose(large, high, size),

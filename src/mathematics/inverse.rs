@@ -17,13 +17,8 @@ const ABOVE: [f64; 6] = [
     7.915_349_942_898_145e-4,
     3.479_331_075_960_212e-5,
 ];
-const BELOW: [f64; 5] = [
-    1.0,
-    -2.403_394_911_734_414,
-    2.020_945_760_233_505_7,
-    -6.882_839_716_054_533e-1,
-    7.703_815_055_590_194e-2,
-];
+const BELOW: [f64; 5] =
+    [1.0, -2.403_394_911_734_414, 2.020_945_760_233_505_7, -6.882_839_716_054_533e-1, 7.703_815_055_590_194e-2];
 
 /// What asin and acos share, of a magnitude from 0 to 1.
 struct Arc<A: Arithmetic> {
@@ -82,18 +77,9 @@ pub fn acos<A: Arithmetic>(m: A, x: A::Real) -> A::Real {
 
 /// Where atan changes its way, and the angle that it takes off beyond, to two parts.
 const BOUNDS: [f64; 4] = [0.4375, 0.6875, 1.1875, 2.4375];
-const HIGH: [f64; 4] = [
-    4.636_476_090_008_061e-1,
-    FRAC_PI_4,
-    9.827_937_232_473_29e-1,
-    FRAC_PI_2,
-];
-const LOW: [f64; 4] = [
-    2.269_877_745_296_168_7e-17,
-    3.061_616_997_868_383e-17,
-    1.390_331_103_123_099_8e-17,
-    6.123_233_995_736_766e-17,
-];
+const HIGH: [f64; 4] = [4.636_476_090_008_061e-1, FRAC_PI_4, 9.827_937_232_473_29e-1, FRAC_PI_2];
+const LOW: [f64; 4] =
+    [2.269_877_745_296_168_7e-17, 3.061_616_997_868_383e-17, 1.390_331_103_123_099_8e-17, 6.123_233_995_736_766e-17];
 /// (t - atan t) / t is t^2 times the first polynomial of t^4, plus t^4 times the second.
 const ODD: [f64; 6] = [
     3.333_333_333_333_293e-1,
@@ -133,5 +119,5 @@ pub fn atan<A: Arithmetic>(m: A, x: A::Real) -> A::Real {
     let series = square * polynomial(m, fourth, &ODD) + fourth * polynomial(m, fourth, &EVEN);
     let angles = |of: [f64; 4]| by_range([m.real(0.0), m.real(of[0]), m.real(of[1]), m.real(of[2]), m.real(of[3])]);
     let value = angles(HIGH) - ((t * series - angles(LOW)) - t);
-    turned(m, value, sign(m, x))
+    m.choose(m.equal(x, x), turned(m, value, sign(m, x)), m.real(NAN))
 }

@@ -78,6 +78,11 @@ impl Arithmetic for Native {
     }
 
     #[inline(always)]
+    fn is_known(self, a: bool) -> bool {
+        a
+    }
+
+    #[inline(always)]
     fn any(self, a: Wrapping<u64>) -> bool {
         a.0 != 0
     }
