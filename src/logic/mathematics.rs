@@ -56,7 +56,14 @@ fn without_idle(mut program: Program) -> Program {
         }
     }
     let mut next = 0;
-    let places: Vec<u32> = used.iter().map(|used| std::mem::replace(&mut next, next + u32::from(*used))).collect();
+    let places: Vec<u32> = used
+        .iter()
+        .map(|used| {
+            let place = next;
+            next += u32::from(*used);
+            place
+        })
+        .collect();
     let all = std::mem::take(&mut program.instructions).into_iter().zip(used);
     program.instructions = all
         .filter(|(_, used)| *used)
