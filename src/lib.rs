@@ -50,6 +50,7 @@ pub mod ladder;
 pub mod load;
 pub mod logic;
 pub mod lower;
+pub mod mathematics;
 pub mod opt;
 pub mod replay;
 pub mod simulate;
