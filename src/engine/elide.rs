@@ -19,6 +19,7 @@ use std::ops::Range;
 use rung_runtime::Scan;
 
 use crate::elementary::Elementary;
+use crate::engine::interp::Interpreter;
 use crate::logic::image::read;
 use crate::logic::{Layout, Program, SlotId};
 use sensitivity::Twin;
@@ -28,7 +29,7 @@ use sensitivity::Twin;
 pub struct Elided<S> {
     engine: S,
     /// Runs the same program, which also says whether `now` counts; `None` where there is no room for the answer.
-    twin: Option<Asked<S>>,
+    twin: Option<Asked>,
     /// What the engine may leave behind: see [`sensitivity`].
     passive: Vec<Range<usize>>,
     inputs: Vec<Range<usize>>,
@@ -40,16 +41,16 @@ pub struct Elided<S> {
     left_out: u64,
 }
 
-/// The engine that says whether `now` counts.
+/// What says whether `now` counts. It is asked once for every time that a program falls still, and not worth compiling.
 #[derive(Debug)]
-struct Asked<S> {
-    engine: S,
+struct Asked {
+    engine: Interpreter,
     image: Vec<u8>,
     /// Where in the image the answer is.
     answer: usize,
 }
 
-impl<S: Scan> Asked<S> {
+impl Asked {
     /// Whether a scan of an image would do something else at another time than `now`.
     fn time_counts(&mut self, image: &[u8], now: i64) -> bool {
         self.image[..image.len()].copy_from_slice(image);
@@ -69,23 +70,20 @@ enum Idle {
 }
 
 impl<S: Scan> Elided<S> {
-    /// Runs a program on two engines that `make` makes: one for the program, and one for the program with one more slot.
-    ///
-    /// # Errors
-    /// That of `make`.
-    pub fn new<E>(program: &Program, mut make: impl FnMut(&Program) -> Result<S, E>) -> Result<Self, E> {
+    /// Leaves out scans of an engine that runs this program and that has not run a scan yet.
+    pub fn new(engine: S, program: &Program) -> Self {
         let layout = &program.layout;
         let (twin, passive) = match sensitivity::twin(program) {
             Some(Twin { program, answer, passive }) => {
-                let image = vec![0; program.layout.size() as usize];
-                (Some(Asked { engine: make(&program)?, image, answer }), passive)
+                let (engine, image) = (Interpreter::new(&program), vec![0; program.layout.size() as usize]);
+                (Some(Asked { engine, image, answer }), passive)
             }
             None => (None, BTreeSet::new()),
         };
         let range = |bytes: &Range<u32>| bytes.start as usize..bytes.end as usize;
         let due = program.tasks.iter().filter_map(|task| task.due).map(|slot| layout.slot(slot).offset).collect();
-        Ok(Self {
-            engine: make(program)?,
+        Self {
+            engine,
             twin,
             passive: passive.iter().map(|slot| range_of(layout, *slot)).collect(),
             inputs: layout.inputs().iter().map(|run| range(&run.bytes)).collect(),
@@ -93,7 +91,7 @@ impl<S: Scan> Elided<S> {
             image: vec![0; layout.size() as usize],
             idle: Idle::No,
             left_out: 0,
-        })
+        }
     }
 
     /// Scans that were left out so far.
