@@ -13,6 +13,7 @@ pub mod evaluate;
 pub mod execute;
 pub mod image;
 pub mod map;
+pub mod mathematics;
 mod op;
 mod parse;
 mod print;

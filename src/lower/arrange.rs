@@ -43,6 +43,7 @@ fn ranks(program: &Program) -> Vec<u32> {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..) => {}
         }
     }

@@ -69,6 +69,7 @@ fn at(before: &Program, after: &Program, byte: usize, seed: u64) -> Difference {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..) => false,
         })

@@ -76,6 +76,7 @@ impl Costs {
                     | Op::Compare(..)
                     | Op::Select(..)
                     | Op::Convert(_)
+                    | Op::Reinterpret(_)
                     | Op::Call(..)
                     | Op::LoadIndexed(..)
                     | Op::StoreIndexed(..)

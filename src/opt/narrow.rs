@@ -44,6 +44,7 @@ fn narrowed(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<
         | Op::Unary(..)
         | Op::Binary(..)
         | Op::Select(..)
+        | Op::Reinterpret(_)
         | Op::Call(..)
         | Op::LoadIndexed(..)
         | Op::StoreIndexed(..)

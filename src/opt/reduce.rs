@@ -21,6 +21,7 @@ pub(super) fn reduce(program: Program) -> Program {
         | Op::Compare(..)
         | Op::Select(..)
         | Op::Convert(_)
+        | Op::Reinterpret(_)
         | Op::Call(..)
         | Op::LoadIndexed(..)
         | Op::StoreIndexed(..)

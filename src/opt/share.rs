@@ -104,6 +104,7 @@ impl Sharing {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..) => self.shared(output, place, instruction, self.key(ty, op, 0)),
         }
     }
