@@ -32,13 +32,13 @@ impl Graph {
             return opposite;
         }
         let opposite = output.not(emitted.value);
-        self.emitted.insert(literal.node, Emitted { opposite: Some(opposite), ..emitted });
+        self.emitted[literal.node as usize] = Some(Emitted { opposite: Some(opposite), ..emitted });
         opposite
     }
 
     fn emit(&mut self, output: &mut Output, node: u32) -> Emitted {
-        if let Some(emitted) = self.emitted.get(&node) {
-            return *emitted;
+        if let Some(emitted) = self.emitted[node as usize] {
+            return emitted;
         }
         let (value, inverted) = match &self.nodes[node as usize] {
             Node::Leaf(leaf) => {
@@ -51,7 +51,7 @@ impl Graph {
             }
         };
         let emitted = Emitted { value, inverted, opposite: None };
-        self.emitted.insert(node, emitted);
+        self.emitted[node as usize] = Some(emitted);
         emitted
     }
 

@@ -49,7 +49,8 @@ pub(super) struct Graph {
     leaves: HashMap<ValueId, u32>,
     /// The simple ANDs, by their literals in order.
     interned: HashMap<Vec<Literal>, u32>,
-    pub(super) emitted: HashMap<u32, super::emit::Emitted>,
+    /// By node: what it came out as, once it did.
+    pub(super) emitted: Vec<Option<super::emit::Emitted>>,
 }
 
 impl Graph {
@@ -72,6 +73,7 @@ impl Graph {
         self.depths.push(depth);
         self.shared.push(false);
         self.simple.push(None);
+        self.emitted.push(None);
         place
     }
 
