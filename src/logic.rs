@@ -10,6 +10,7 @@
 
 mod build;
 pub mod evaluate;
+pub mod execute;
 pub mod image;
 pub mod map;
 pub mod mathematics;
