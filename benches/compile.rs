@@ -5,12 +5,13 @@
 mod workload;
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use rung::engine::clif::Chunk;
 use rung::engine::disassemble;
-use rung::engine::jit::{Jit, host_isa};
-use rung::logic::Program;
+use rung::engine::jit::{Edited, Jit, host_isa};
+use rung::logic::{Binary, Op, Program};
 use rung::opt;
 use workload::workload;
 
@@ -50,5 +51,48 @@ fn size(program: &Program, rungs: u32) -> String {
     format!("{:.1} bytes and {:.2} instructions a rung", each(jit.code_bytes()), each(instructions))
 }
 
-criterion_group!(benches, compiles);
+/// Compiling one rung of many again: from the changed logic to installed code, all chunks compared.
+fn edits(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("edit");
+    group.sample_size(20);
+    let rungs = 20_000;
+    let program = opt::optimise(workload(rungs));
+    let changed = edited_at(program.clone(), program.sections.len() / 2);
+    group.bench_function(format!("full/{rungs}"), |bencher| {
+        bencher.iter_batched(
+            || program.clone(),
+            |program| Edited::compile(program).expect("code for this machine"),
+            BatchSize::LargeInput,
+        );
+    });
+    let mut edited = Edited::compile(program.clone()).expect("code for this machine");
+    group.bench_function(format!("one rung/{rungs}"), |bencher| {
+        bencher.iter_custom(|edits| {
+            let mut spent = Duration::ZERO;
+            for edit in 0..edits {
+                let next = if edit % 2 == 0 { changed.clone() } else { program.clone() };
+                let start = Instant::now();
+                let update = edited.update(black_box(next)).expect("code for this machine");
+                spent += start.elapsed();
+                assert!(update.compiled <= 1, "{update:?}");
+            }
+            spent
+        });
+    });
+    group.finish();
+}
+
+/// The same program with another operation in one section.
+fn edited_at(mut program: Program, section: usize) -> Program {
+    let range = program.section_range(section);
+    let joins = |op: &Op| matches!(op, Op::Binary(Binary::And, ..));
+    let join = program.instructions[range].iter_mut().find(|instruction| joins(&instruction.op));
+    let join = join.expect("contacts in series");
+    if let Op::Binary(_, a, b) = join.op {
+        join.op = Op::Binary(Binary::Or, a, b);
+    }
+    program
+}
+
+criterion_group!(benches, compiles, edits);
 criterion_main!(benches);
