@@ -56,12 +56,7 @@ fn a_timer_with_two_calls_has_two_presets() {
 #[test]
 fn a_preset_that_someone_else_sets_is_no_constant() {
     for timer in TIMERS {
-        agree(
-            &format!("var t : {timer}\nrung\n a t(PT := T#300ms) (x)\nrung\n b {{t.PT := T#600ms}} (y)"),
-            A,
-            B,
-            0..,
-        );
+        agree(&format!("var t : {timer}\nrung\n a t(PT := T#300ms) (x)\nrung\n b {{t.PT := T#600ms}} (y)"), A, B, 0..);
         agree(
             &format!("var d : TIME := T#300ms\nrung\n a t:{timer}(PT := d) (x)\nrung\n b {{d := T#800ms}} (y)"),
             A,
