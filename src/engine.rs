@@ -9,4 +9,5 @@ pub mod disassemble;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
+pub mod object;
 pub mod target;

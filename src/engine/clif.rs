@@ -73,6 +73,10 @@ pub enum CompileError {
         /// What Cranelift says, or which limit of ours is passed.
         reason: String,
     },
+    /// The object cannot be written.
+    Object(String),
+    /// Code or image are beyond the reach of the target's calls and addresses; the message says by how much.
+    TooLarge(String),
     /// No executable memory was to be had.
     Memory(std::io::Error),
 }
@@ -87,6 +91,8 @@ impl fmt::Display for CompileError {
             Self::Chunk { sections, reason } => {
                 write!(f, "sections {} to {} cannot be compiled: {reason}", sections.start, sections.end)
             }
+            Self::Object(reason) => write!(f, "no object can be written: {reason}"),
+            Self::TooLarge(reason) => f.write_str(reason),
             Self::Memory(error) => write!(f, "no executable memory: {error}"),
         }
     }
@@ -96,7 +102,7 @@ impl std::error::Error for CompileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Memory(error) => Some(error),
-            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } => None,
+            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } | Self::Object(_) | Self::TooLarge(_) => None,
         }
     }
 }
@@ -106,7 +112,8 @@ impl CompileError {
     pub fn code(&self) -> Code {
         match self {
             Self::NeedsFpu { .. } => Code::NeedsFpu,
-            Self::NoBackEnd(_) | Self::Chunk { .. } | Self::Memory(_) => Code::CannotCompile,
+            Self::TooLarge(_) => Code::TooLargeForTarget,
+            Self::NoBackEnd(_) | Self::Chunk { .. } | Self::Object(_) | Self::Memory(_) => Code::CannotCompile,
         }
     }
 }
@@ -150,6 +157,8 @@ pub struct Chunk {
     pub alignment: u32,
     /// Offsets into the image, in bytes, of the pointers that it takes.
     pub bases: [u32; BASES],
+    /// How many of those pointers the code looks at, the first ones.
+    pub used_bases: usize,
     /// Whether it takes a pointer to the table of helpers, behind the last base.
     pub calls_helpers: bool,
     /// Where in the code a section's instructions begin, in the order of the code: `(offset, section)`. A section
@@ -208,7 +217,7 @@ impl<'a> Compiler<'a> {
     /// # Errors
     /// [`CompileError::Chunk`] when Cranelift's limits or [`ALIVE`] are passed.
     pub fn chunk(&mut self, sections: Range<usize>) -> Result<Chunk, CompileError> {
-        let Built { bases, alive } = self.build(sections.clone());
+        let Built { bases, used_bases, alive } = self.build(sections.clone());
         let refused = |reason: String| CompileError::Chunk { sections: sections.clone(), reason };
         if alive > ALIVE {
             return Err(refused(format!("{alive} values are needed at one time, and at most {ALIVE} may be")));
@@ -229,7 +238,7 @@ impl<'a> Compiler<'a> {
         let alignment = self.isa.function_alignment().minimum.max(compiled.buffer.alignment);
         let code = compiled.code_buffer().to_vec();
         let calls_helpers = calls_helpers(self.program, sections.clone());
-        Ok(Chunk { sections, code, instruction_bytes, alignment, bases, calls_helpers, marks })
+        Ok(Chunk { sections, code, instruction_bytes, alignment, bases, used_bases, calls_helpers, marks })
     }
 
     /// Makes the function of a chunk in `self.context`.

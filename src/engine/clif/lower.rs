@@ -20,6 +20,8 @@ use crate::logic::{Array, Binary, Compare, Instruction, Op, Program, SlotId, Una
 pub(super) struct Built {
     /// The offsets of the pointers that it takes.
     pub(super) bases: [u32; BASES],
+    /// How many of them are used.
+    pub(super) used_bases: usize,
     /// The most values that wait for a use at one time.
     pub(super) alive: usize,
 }
@@ -33,7 +35,7 @@ pub(super) fn chunk(
     function: &mut Function,
     context: &mut FunctionBuilderContext,
 ) -> Built {
-    let bases = place::bases(program, sections.clone(), target);
+    let (bases, used_bases) = place::bases(program, sections.clone(), target);
     let mut builder = FunctionBuilder::new(function, context);
     let block = builder.create_block();
     builder.append_block_params_for_function_params(block);
@@ -49,6 +51,8 @@ pub(super) fn chunk(
     let now = params[1];
     let mut pointers = [(0, params[0]); BASES];
     for (index, pointer) in pointers.iter_mut().enumerate() {
+        // What is not used stays away, so that nothing is reached from it.
+        let index = if index < used_bases { index } else { 0 };
         *pointer = (bases[index], params[if index == 0 { 0 } else { index + 1 }]);
     }
     let mut lowering = Lowering {
@@ -78,7 +82,7 @@ pub(super) fn chunk(
     }
     lowering.builder.ins().return_(&[]);
     lowering.builder.finalize(isa.frontend_config());
-    Built { bases, alive: lowering.most_alive }
+    Built { bases, used_bases, alive: lowering.most_alive }
 }
 
 pub(super) struct Lowering<'a, 'f> {
