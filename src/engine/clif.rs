@@ -102,7 +102,9 @@ impl std::error::Error for CompileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Memory(error) => Some(error),
-            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } | Self::Object(_) | Self::TooLarge(_) => None,
+            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } | Self::Object(_) | Self::TooLarge(_) => {
+                None
+            }
         }
     }
 }
@@ -166,17 +168,18 @@ pub struct Chunk {
     pub marks: Vec<(u32, usize)>,
 }
 
-/// The settings that made the fastest code and the quickest compile; they hold for every target.
+/// The settings that made the fastest code and the quickest compile; they hold for every target. Chunks hold no address
+/// of anything; whether other functions find theirs in a table that the linker makes can be chosen.
 ///
 /// # Errors
 /// When this Cranelift knows one of them no longer.
-pub fn flags() -> Result<settings::Flags, SetError> {
+pub fn flags(addresses_by_table: bool) -> Result<settings::Flags, SetError> {
     let mut builder = settings::builder();
     // `speed` makes larger code here and undoes the sinking of loads; the passes over logic do its work.
     builder.set("opt_level", "none")?;
     builder.set("regalloc_algorithm", "backtracking")?;
     builder.set("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" })?;
-    builder.set("is_pic", "false")?;
+    builder.set("is_pic", if addresses_by_table { "true" } else { "false" })?;
     builder.set("unwind_info", "false")?;
     builder.set("enable_probestack", "false")?;
     builder.set("machine_code_cfg_info", "false")?;
@@ -334,8 +337,15 @@ pub(crate) fn heading(program: &Program, section: usize, comment: &str) -> Strin
 struct Target {
     /// Whether the low byte of a 4-byte load at any address is the byte there, and the load can be part of AND and OR.
     wide_loads: bool,
-    /// Whether a select, and a rotation, becomes a branch, so that masks are wanted.
+    /// Whether a select becomes a branch, so that masks are wanted.
     select_branches: bool,
+    /// Whether rotations are made of shifts: Cranelift's would branch, or be no shorter.
+    rotates_by_shifts: bool,
+    /// Whether a BOOL is held in 64 bits, all of which count, so that a mask is one instruction away. Else it is the low
+    /// byte of what holds it.
+    whole_bools: bool,
+    /// Bits of a constant, with its sign, that fit into the instruction that uses it, or into one more.
+    short_constant: u32,
     /// Whether 16 bytes can be moved at a time.
     wide_moves: bool,
     /// How far below and above a pointer an access is short.
@@ -344,19 +354,43 @@ struct Target {
 }
 
 impl Target {
-    const RISCV64: Self =
-        Self { wide_loads: false, select_branches: true, wide_moves: false, below: 2048, above: 2047 };
+    const RISCV64: Self = Self {
+        wide_loads: false,
+        select_branches: true,
+        rotates_by_shifts: true,
+        whole_bools: true,
+        short_constant: 12,
+        wide_moves: false,
+        below: 2048,
+        above: 2047,
+    };
+
+    const OTHER: Self = Self {
+        wide_loads: false,
+        select_branches: false,
+        rotates_by_shifts: false,
+        whole_bools: false,
+        short_constant: 17,
+        wide_moves: false,
+        below: 0,
+        above: 4095,
+    };
 
     fn of(isa: &dyn TargetIsa) -> Self {
+        let has = |name: &str| isa.isa_flags().iter().any(|flag| flag.name == name && flag.as_bool() == Some(true));
         match isa.triple().architecture {
             Architecture::X86_64 => {
-                Self { wide_loads: true, select_branches: false, wide_moves: true, below: 128, above: 127 }
+                Self { wide_loads: true, wide_moves: true, short_constant: 64, below: 128, above: 127, ..Self::OTHER }
             }
-            Architecture::Riscv64(_) => Self::RISCV64,
-            Architecture::Aarch64(_) => {
-                Self { wide_loads: false, select_branches: false, wide_moves: true, below: 0, above: 4095 }
-            }
-            _ => Self { wide_loads: false, select_branches: false, wide_moves: false, below: 0, above: 4095 },
+            Architecture::Riscv64(_) => Self { select_branches: !has("has_zicond"), ..Self::RISCV64 },
+            Architecture::Aarch64(_) => Self { wide_moves: true, ..Self::OTHER },
+            _ => Self::OTHER,
         }
+    }
+
+    /// Whether a constant takes instructions of its own, so that it is worth to be kept in a register.
+    fn is_long(&self, bits: u64) -> bool {
+        let least = 1i64.checked_shl(self.short_constant - 1).unwrap_or(0);
+        self.short_constant < 64 && !(-least..least).contains(&bits.cast_signed())
     }
 }

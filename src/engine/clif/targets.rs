@@ -27,7 +27,7 @@ fn isa(triple: &str, features: &[&str]) -> OwnedTargetIsa {
     let triple: Triple = triple.parse().expect("a known triple");
     let mut builder = isa::lookup(triple).expect("a back end for every target of the table");
     features.iter().for_each(|feature| builder.enable(feature).expect("a feature of this target"));
-    builder.finish(flags().expect("known flags")).expect("settings that fit")
+    builder.finish(flags(false).expect("known flags")).expect("settings that fit")
 }
 
 /// Whether an operation is listed for an architecture.

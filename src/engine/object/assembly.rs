@@ -5,12 +5,14 @@ use std::fmt;
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::ir::{
-    AbiParam, FuncRef, Function as Ir, InstBuilder, MemFlagsData, Signature, SourceLoc, Type, UserFuncName, Value, types,
+    AbiParam, FuncRef, Function as Ir, InstBuilder, MemFlagsData, Signature, SourceLoc, Type, UserFuncName, Value,
+    types,
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
-use cranelift_object::object::{FileFlags, SymbolScope, elf};
+use cranelift_object::object::write::Symbol as ObjectSymbol;
+use cranelift_object::object::{FileFlags, SymbolFlags, SymbolScope, elf};
 use cranelift_object::{ObjectBuilder, ObjectModule};
 
 use super::{Function, Role};
@@ -71,10 +73,6 @@ impl<'a> Assembly<'a> {
 
     pub(super) fn interface(&self) -> &'a Interface {
         self.interface
-    }
-
-    pub(super) fn target(&self) -> &'a Target {
-        self.target
     }
 
     /// Data that firmware sees; constant, but for zeros.
@@ -226,12 +224,19 @@ impl<'a> Assembly<'a> {
         let mut product = self.module.finish();
         if let Some(e_flags) = self.target.elf_flags() {
             // Cranelift marks every RISC-V object as one that passes reals in registers for them.
-            product.object.flags =
-                FileFlags::Elf { os_abi: elf::ELFOSABI_NONE, abi_version: 0, e_flags };
+            product.object.flags = FileFlags::Elf { os_abi: elf::ELFOSABI_NONE, abi_version: 0, e_flags };
         }
-        let mut scan = product.object.symbol(product.function_symbol(round)).clone();
-        scan.name = self.interface.symbol(Symbol::Scan).into_bytes();
-        scan.scope = SymbolScope::Dynamic;
+        let round = product.object.symbol(product.function_symbol(round));
+        let scan = ObjectSymbol {
+            name: self.interface.symbol(Symbol::Scan).into_bytes(),
+            value: round.value,
+            size: round.size,
+            kind: round.kind,
+            scope: SymbolScope::Dynamic,
+            weak: false,
+            section: round.section,
+            flags: SymbolFlags::None,
+        };
         product.object.add_symbol(scan);
         let bytes = product.emit().map_err(refused)?;
         Ok((bytes, self.functions))

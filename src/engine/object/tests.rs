@@ -1,0 +1,1 @@
+//! Objects that are looked at without being run.
