@@ -18,7 +18,7 @@ mod tests;
 use super::clif::{self, Chunk, CompileError};
 use super::target::Target;
 use crate::interface::{ABI_VERSION, Interface, Symbol, image_size, retain_offset, retain_size};
-use crate::logic::Program;
+use crate::logic::{Helper, Program};
 use assembly::{Assembly, Contents};
 
 /// What a function of an object is for.
@@ -56,6 +56,8 @@ pub struct Object {
     pub bytes: Vec<u8>,
     /// The rungs' code, in order.
     pub chunks: Vec<Chunk>,
+    /// The code of the helpers that are called.
+    pub helpers: Vec<(Helper, Vec<Chunk>)>,
     /// All other code, in the order of the file.
     pub functions: Vec<Function>,
 }
@@ -79,14 +81,15 @@ pub fn assemble(program: &Program, interface: &Interface, target: &Target) -> Re
     let mut assembly = Assembly::new(interface, target)?;
     data(&mut assembly, program)?;
     let counter = clock::counter(&mut assembly)?;
-    let table = helpers::table(&mut assembly, program, &chunks)?;
+    let mut helpers = Vec::new();
+    let table = helpers::table(&mut assembly, program, target, &chunks, &mut helpers)?;
     let round = round::write(&mut assembly, program, &chunks, table)?;
     image::write_init(&mut assembly, &program.layout, counter)?;
     image::write_save(&mut assembly, &program.layout)?;
     clock::write_tick(&mut assembly, counter)?;
     clock::write_cycle(&mut assembly, &program.layout, counter, round)?;
     let (bytes, functions) = assembly.finish(round)?;
-    Ok(Object { bytes, chunks, functions })
+    Ok(Object { bytes, chunks, helpers, functions })
 }
 
 /// The constants that firmware reads, and an image.

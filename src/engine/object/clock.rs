@@ -4,7 +4,7 @@
 //! time. A latch takes the difference from the last one, so that the counter may wrap around between two.
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{InstBuilder, Value, types};
+use cranelift_codegen::ir::{InstBuilder, types};
 use cranelift_module::{DataId, FuncId};
 
 use super::Role;
@@ -60,18 +60,11 @@ pub(super) fn write_cycle(
         // Held at the end of time.
         let most = body.number(i64::MAX / tick);
         let beyond = body.builder.ins().icmp(IntCC::UnsignedGreaterThan, total, most);
-        let now = held(body, now, beyond);
+        // A time that is not beyond it has no sign.
+        let mask = body.mask(beyond);
+        let now = body.builder.ins().bor(now, mask);
+        let now = body.builder.ins().ishl_imm_u(now, 1);
+        let now = body.builder.ins().ushr_imm_u(now, 1);
         body.call(round, &[image, now]);
     })
-}
-
-/// A time, or the end of time where a comparison holds.
-pub(super) fn held(body: &mut super::assembly::Body<'_>, time: Value, beyond: Value) -> Value {
-    let mask = body.mask(beyond);
-    let time = body.builder.ins().bor(time, mask);
-    let greatest = body.builder.ins().ushr_imm_u(mask, 1);
-    // Of all ones the sign goes; else nothing does.
-    let sign = body.builder.ins().bxor(mask, greatest);
-    let keep = body.builder.ins().bnot(sign);
-    body.builder.ins().band(time, keep)
 }

@@ -50,17 +50,17 @@ mod tests {
 
     #[test]
     fn what_calls_and_addresses_reach_is_an_object_and_no_more() {
-        let fits = |triple: &str, code, image| {
+        let tried = |triple: &str, code, image| {
             let triple: Triple = triple.parse().expect("a known triple");
-            super::fits(triple.architecture, code, image).map_err(|error| error.code())
+            fits(triple.architecture, code, image).map_err(|error| error.code())
         };
         let refused = Err(Code::TooLargeForTarget);
-        assert_eq!(fits("aarch64-unknown-linux-gnu", 126 << 20, 1 << 30), Ok(()));
-        assert_eq!(fits("aarch64-unknown-linux-gnu", 128 << 20, 1000), refused);
-        assert_eq!(fits("x86_64-unknown-linux-gnu", 1 << 30, 1000), Ok(()));
-        assert_eq!(fits("x86_64-unknown-linux-gnu", 1 << 31, 1000), refused);
-        assert_eq!(fits("riscv64gc-unknown-none-elf", 1000, 1 << 30), refused);
-        assert_eq!(fits("riscv64gc-unknown-none-elf", 1000, 1 << 29), Ok(()));
-        assert_eq!(fits("riscv64gc-unknown-none-elf", u64::MAX, u64::MAX >> 1), refused);
+        assert_eq!(tried("aarch64-unknown-linux-gnu", 126 << 20, 1 << 30), Ok(()));
+        assert_eq!(tried("aarch64-unknown-linux-gnu", 128 << 20, 1000), refused);
+        assert_eq!(tried("x86_64-unknown-linux-gnu", 1 << 30, 1000), Ok(()));
+        assert_eq!(tried("x86_64-unknown-linux-gnu", 1 << 31, 1000), refused);
+        assert_eq!(tried("riscv64gc-unknown-none-elf", 1000, 1 << 30), refused);
+        assert_eq!(tried("riscv64gc-unknown-none-elf", 1000, 1 << 29), Ok(()));
+        assert_eq!(tried("riscv64gc-unknown-none-elf", u64::MAX, u64::MAX >> 1), refused);
     }
 }

@@ -8,7 +8,6 @@ use cranelift_module::{DataId, FuncId};
 
 use super::Role;
 use super::assembly::{Assembly, Body, plain};
-use super::clock::held;
 use crate::engine::clif::{BASES, Chunk, CompileError};
 use crate::logic::{Program, Turn};
 
@@ -66,7 +65,7 @@ pub(super) fn write(
 }
 
 /// The bases that a chunk is given. Those that it has no use for are left out where they would be in registers.
-fn taken(chunk: &Chunk, convention: CallConv) -> &[u32] {
+pub(super) fn taken(chunk: &Chunk, convention: CallConv) -> &[u32] {
     let in_registers = matches!(convention, CallConv::SystemV | CallConv::AppleAarch64);
     if in_registers && !chunk.calls_helpers { &chunk.bases[..chunk.used_bases.max(1)] } else { &chunk.bases[..BASES] }
 }
@@ -100,4 +99,15 @@ fn next_due(body: &mut Body<'_>, interval: i64, now: Value) -> Value {
     let then = body.builder.ins().iadd(now, left);
     let beyond = body.builder.ins().icmp(IntCC::SignedLessThan, then, now);
     held(body, then, beyond)
+}
+
+/// A time, or the end of time where a comparison holds.
+fn held(body: &mut Body<'_>, time: Value, beyond: Value) -> Value {
+    let mask = body.mask(beyond);
+    let time = body.builder.ins().bor(time, mask);
+    let greatest = body.builder.ins().ushr_imm_u(mask, 1);
+    // Of all ones the sign goes; else nothing does.
+    let sign = body.builder.ins().bxor(mask, greatest);
+    let keep = body.builder.ins().bnot(sign);
+    body.builder.ins().band(time, keep)
 }
