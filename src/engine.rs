@@ -10,4 +10,5 @@ pub mod helpers;
 pub mod interp;
 pub mod jit;
 pub mod object;
+pub mod report;
 pub mod target;

@@ -9,7 +9,7 @@ use super::{Failure, Missing, duration, load_checked, read_source, write_whole};
 use crate::diagnostic::Code;
 use crate::engine::clif::{self, CompileError};
 use crate::engine::target::{BadTarget, Target};
-use crate::engine::{disassemble, object};
+use crate::engine::{disassemble, object, report};
 use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
@@ -53,6 +53,9 @@ pub(super) struct Arguments {
     /// Write the map of the process image, in JSON
     #[arg(long, value_name = "FILE.json")]
     map: Option<PathBuf>,
+    /// Report what a scan of the object costs, rung by rung, in JSON where the file is named so [default: printed]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = "-")]
+    report: Option<PathBuf>,
     /// The map of an earlier build: what it places stays in its place
     #[arg(long, value_name = "FILE.json")]
     previous_map: Option<PathBuf>,
@@ -84,10 +87,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // All outputs are made before the first is written.
     let emit = arguments.emit();
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
+    let report = arguments.report.as_deref().map(|path| built.report(path)).transpose()?;
+    if arguments.report.as_deref() == Some(Path::new("-")) && output.is_some() && arguments.output == Path::new("-") {
+        let hint = "give the output a file with `-o`, or the report one with `--report=FILE`";
+        return Err(Failure::hinted(Code::BadOptions, "output and report cannot both be printed", hint));
+    }
     if let Some(path) = &arguments.map {
         write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
     }
-    output.map_or(Ok(()), |output| write_whole(&arguments.output, &output))
+    if let Some(output) = output {
+        write_whole(&arguments.output, &output)?;
+    }
+    match (&arguments.report, report) {
+        (Some(path), Some(report)) => write_whole(path, report.as_bytes()),
+        _ => Ok(()),
+    }
 }
 
 impl Arguments {
@@ -96,7 +110,7 @@ impl Arguments {
         let objects = self.output.extension().is_some_and(|extension| extension == "o" || extension == "obj");
         match self.emit {
             None if self.target.is_some() || objects => Some(Emit::Obj),
-            None if self.map.is_some() => None,
+            None if self.map.is_some() || self.report.is_some() => None,
             None => Some(Emit::Logic),
             given => given,
         }
@@ -175,6 +189,16 @@ impl Built<'_> {
                 listing.map(String::into_bytes).map_err(|reason| Failure::new(Code::CannotCompile, reason))
             }
         }
+    }
+
+    /// What the object costs, as a table, or in JSON for a file that is named so.
+    fn report(&self, path: &Path) -> Result<String, Failure> {
+        let target = self.object_target()?;
+        let object = object::assemble(self.program, self.interface, &target).map_err(|error| self.refused(&error))?;
+        let report = report::report(self.program, &object, &target)
+            .map_err(|reason| Failure::new(Code::CannotCompile, reason))?;
+        let json = path.extension().is_some_and(|extension| extension == "json");
+        Ok(if json { report.json() } else { report.table() })
     }
 
     /// That there is no code, with the rung that is to blame.

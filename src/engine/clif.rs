@@ -40,6 +40,7 @@ use crate::diagnostic::Code;
 use crate::logic::{Binary, Op, Program, verify};
 use lower::Built;
 
+pub(super) use array::copy_is_called;
 pub use parallel::compile;
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time

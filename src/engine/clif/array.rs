@@ -112,7 +112,7 @@ impl Lowering<'_, '_> {
 }
 
 /// Whether a copy to an array is a call of a helper.
-pub(super) fn copy_is_called(program: &Program, to: ArrayId) -> bool {
+pub(in crate::engine) fn copy_is_called(program: &Program, to: ArrayId) -> bool {
     size(program, to) > MOVED
 }
 
