@@ -272,7 +272,7 @@ fn calls_helpers(program: &Program, sections: Range<usize>) -> bool {
     let mut instructions = sections.flat_map(|section| &program.instructions[program.section_range(section)]);
     instructions.any(|instruction| match instruction.op {
         Op::Call(..) => true,
-        Op::CopyArray(to, ..) => array::copy_is_called(program, to),
+        Op::CopyArray(to, ..) => copy_is_called(program, to),
         _ => false,
     })
 }
