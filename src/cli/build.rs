@@ -108,9 +108,11 @@ impl Arguments {
     /// What to write, if anything beside what has an option of its own.
     fn emit(&self) -> Option<Emit> {
         let objects = self.output.extension().is_some_and(|extension| extension == "o" || extension == "obj");
+        let printed = self.output == Path::new("-");
         match self.emit {
+            // What has an option of its own is all that was asked for.
+            None if printed && (self.map.is_some() || self.report.is_some()) => None,
             None if self.target.is_some() || objects => Some(Emit::Obj),
-            None if self.map.is_some() || self.report.is_some() => None,
             None => Some(Emit::Logic),
             given => given,
         }

@@ -182,33 +182,19 @@ fn count_function(function: &Function, triple: &Triple) -> Result<Cost, String> 
     count(&function.code[..function.instruction_bytes], triple)
 }
 
-/// Major opcodes of RISC-V that hold arithmetic only: what the disassembler does not know yet is of these.
-const ARITHMETIC: [u8; 4] = [0x13, 0x1B, 0x33, 0x3B];
-
 /// Counts instructions, and what they do to memory.
-fn count(mut code: &[u8], triple: &Triple) -> Result<Cost, String> {
-    let mut cost = Cost { bytes: code.len(), ..Cost::default() };
-    while !code.is_empty() {
-        let lines = disassemble::lines(code, triple)?;
-        for line in &lines {
-            cost.instructions += 1;
-            let (loads, stores) = memory(&line.text, triple.architecture);
-            cost.loads += usize::from(loads);
-            cost.stores += usize::from(stores);
-        }
-        code = &code[lines.iter().map(|line| line.bytes.len()).sum::<usize>()..];
-        match code {
-            [] => {}
-            [first, _, _, _, rest @ ..]
-                if matches!(triple.architecture, Architecture::Riscv64(_)) && ARITHMETIC.contains(&(first & 0x7F)) =>
-            {
-                cost.instructions += 1;
-                code = rest;
-            }
-            _ => return Err(format!("{} bytes of code cannot be decoded", code.len())),
-        }
+fn count(code: &[u8], triple: &Triple) -> Result<Cost, String> {
+    let mut cost = Cost::default();
+    for line in disassemble::lines(code, triple)? {
+        let (loads, stores) = memory(&line.text, triple.architecture);
+        cost +=
+            Cost { instructions: 1, loads: usize::from(loads), stores: usize::from(stores), bytes: line.bytes.len() };
     }
-    Ok(cost)
+    if cost.bytes == code.len() {
+        Ok(cost)
+    } else {
+        Err(format!("{} bytes cannot be decoded", code.len() - cost.bytes))
+    }
 }
 
 /// Whether an instruction reads memory, and whether it writes it.

@@ -1,8 +1,9 @@
-//! The code of objects, decoded: what branches, and how large it is.
+//! The code of objects, decoded: what branches, and what is not there.
+#![cfg(feature = "all-targets")]
 
 use super::*;
 use crate::engine::disassemble;
-use crate::logic::{CHUNK_SECTIONS, random};
+use crate::logic::random;
 
 const TARGETS: &[(&str, Option<&str>)] = &[
     ("x86_64-unknown-linux-gnu", None),
@@ -20,7 +21,6 @@ fn jumps(function: &Function, target: &Target) -> (usize, usize) {
 }
 
 #[test]
-#[cfg(feature = "all-targets")]
 fn around_the_rungs_nothing_branches_but_for_tasks_with_an_interval() {
     let interface = Interface::default();
     let mut with_interval = 0;
@@ -47,7 +47,6 @@ fn around_the_rungs_nothing_branches_but_for_tasks_with_an_interval() {
 }
 
 #[test]
-#[cfg(feature = "all-targets")]
 fn without_d_an_object_holds_no_floating_point() {
     let target = Target::new("riscv64-unknown-elf", Some("rv64imac"), None).expect("a target");
     let (mut built, mut refused) = (0, 0);
@@ -73,12 +72,19 @@ fn without_d_an_object_holds_no_floating_point() {
 
 #[test]
 fn a_program_of_one_chunk_is_scanned_without_a_call_in_between() {
-    let mut program = random::program(2);
-    let sections = program.tasks.iter().map(|task| task.end).max().expect("a task");
-    assert!(sections <= CHUNK_SECTIONS);
-    let target = Target::new(&Target::host_triple(), None, None).expect("this machine");
-    program.tasks = vec![crate::logic::Task::always(sections)];
-    program.sections.iter_mut().skip(1).for_each(|section| section.starts_chunk = true);
-    let object = assemble(&program, &Interface::default(), &target).expect("an object");
-    assert_eq!(object.functions.iter().any(|function| function.role == Role::Round), object.chunks.len() > 1);
+    let target = Target::new("riscv64-unknown-elf", None, None).expect("a target");
+    let (mut alone, mut called) = (0, 0);
+    for seed in 0..150 {
+        let program = random::program(seed);
+        let object = assemble(&program, &Interface::default(), &target).expect("an object");
+        let plain = program.tasks.iter().all(|task| task.interval.is_none());
+        let is_alone = match object.chunks.as_slice() {
+            [chunk] => plain && program.tasks.len() == 1 && !chunk.calls_helpers,
+            _ => false,
+        };
+        assert_eq!(object.functions.iter().any(|function| function.role == Role::Round), !is_alone, "seed {seed}");
+        alone += usize::from(is_alone);
+        called += usize::from(!is_alone);
+    }
+    assert!(alone > 0 && called > 0, "{alone} alone and {called} called");
 }
