@@ -10,6 +10,7 @@ pub mod cli;
 pub mod diagnostic;
 pub mod draw;
 pub mod elementary;
+pub mod emit;
 pub mod engine;
 pub mod frontend;
 pub mod generate;

@@ -1,12 +1,15 @@
 //! `rung build`: a program as logic, as Cranelift's intermediate form or as assembly of a target, and the map of its
 //! image.
 
+mod notes;
+
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use super::{Failure, Missing, duration, load_checked, read_source, write_whole};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::emit::{self, Notes};
 use crate::engine::clif::{self, CompileError};
 use crate::engine::disassemble;
 use crate::engine::target::{BadTarget, Target};
@@ -15,6 +18,7 @@ use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
 use crate::opt::PASSES;
+use crate::source::{Source, Span};
 
 /// The stage before any pass, for `--after`.
 const LOWER: &str = "lower";
@@ -26,7 +30,7 @@ pub(super) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     missing: Missing,
-    /// What to write [default: logic, unless only a map is asked for]
+    /// What to write [default: logic, unless only a map or header is asked for]
     #[arg(long, value_enum)]
     emit: Option<Emit>,
     /// Where to write it; `-` is the standard output
@@ -50,6 +54,9 @@ pub(super) struct Arguments {
     /// Stop after this pass; `lower` is before the first one, and an unknown one lists them
     #[arg(long, value_name = "PASS")]
     after: Option<String>,
+    /// Write a header for firmware: the structure of the image and the functions
+    #[arg(long, value_name = "FILE.h")]
+    header: Option<PathBuf>,
     /// Write the map of the process image, in JSON
     #[arg(long, value_name = "FILE.json")]
     map: Option<PathBuf>,
@@ -66,11 +73,13 @@ enum Emit {
     Clif,
     /// The target's code, disassembled
     Asm,
+    /// One file of C99 for any compiler, with the functions of an object file
+    C,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let passes = passes_until(arguments.after.as_deref())?;
-    Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
+    let interface = Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
         .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
     let target = arguments.target()?;
     let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
@@ -78,10 +87,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
     let program = PASSES[..passes].iter().fold(program, |program, pass| (pass.run)(program));
-    let built = Built { program: &program, target: target.as_ref() };
+    let place = |line, name: &str| place_of(&loaded.source, line, name);
+    if arguments.emit == Some(Emit::C) || arguments.header.is_some() {
+        emit::validate(&program, &interface, &place)
+            .map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;
+    }
+    let notes = notes::of(&loaded.program, &loaded.source);
+    let built = Built { program: &program, target: target.as_ref(), interface: &interface, notes: &notes };
     // All outputs are made before the first is written.
-    let emit = arguments.emit.or(arguments.map.is_none().then_some(Emit::Logic));
+    let only_beside = arguments.map.is_some() || arguments.header.is_some();
+    let emit = arguments.emit.or((!only_beside).then_some(Emit::Logic));
+    let header = arguments.header.as_deref().map(|path| Ok((path, built.header()?))).transpose()?;
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
+    if let Some((path, text)) = header {
+        write_whole(path, text.as_bytes())?;
+    }
     if let Some(path) = &arguments.map {
         write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
     }
@@ -101,6 +121,29 @@ impl Arguments {
             None => Ok(None),
         }
     }
+}
+
+/// Where a name stands in a line of the source, or else the line.
+fn place_of(source: &Source, line: u32, name: &str) -> Span {
+    let range = usize::try_from(line).ok().and_then(|line| source.line_range(line.checked_sub(1)?)).unwrap_or_default();
+    let text = source.text().get(range.clone()).unwrap_or_default();
+    let is_part = |character: char| character.is_alphanumeric() || character == '_';
+    let is_word = |at: &usize| {
+        !text[..*at].ends_with(is_part) && !text[at + name.len()..].starts_with(is_part) && !name.is_empty()
+    };
+    match text.match_indices(name).map(|(at, _)| at).find(is_word) {
+        Some(at) => Span::new(range.start + at, range.start + at + name.len()),
+        None => Span::new(range.start, range.start + text.trim_end().len()),
+    }
+}
+
+/// What is wrong with a program that has no place in its source.
+fn unplaced(problems: &[Diagnostic]) -> Failure {
+    let text = |problem: &Diagnostic| match &problem.hint {
+        Some(hint) => Failure::hinted(problem.code, &problem.message, hint),
+        None => Failure::new(problem.code, &problem.message),
+    };
+    problems.first().map_or(Failure::Said, text)
 }
 
 /// How many passes run.
@@ -125,6 +168,9 @@ struct Built<'a> {
     program: &'a Program,
     /// The target that was asked for.
     target: Option<&'a Target>,
+    interface: &'a Interface,
+    /// What comments say.
+    notes: &'a Notes,
 }
 
 impl Built<'_> {
@@ -140,6 +186,9 @@ impl Built<'_> {
     fn emitted(&self, emit: Emit) -> Result<Vec<u8>, Failure> {
         match emit {
             Emit::Logic => Ok(logic::print(self.program).into_bytes()),
+            Emit::C => emit::c::emit_with(self.program, self.interface, self.notes)
+                .map(String::into_bytes)
+                .map_err(|problems| unplaced(&problems)),
             Emit::Clif => Ok(clif::text(self.program, &**self.target()?.isa()).into_bytes()),
             Emit::Asm => {
                 let target = self.target()?;
@@ -148,6 +197,10 @@ impl Built<'_> {
                 listing.map(String::into_bytes).map_err(|reason| Failure::new(Code::CannotCompile, reason))
             }
         }
+    }
+
+    fn header(&self) -> Result<String, Failure> {
+        emit::header::emit_with(self.program, self.interface, self.notes).map_err(|problems| unplaced(&problems))
     }
 
     /// That there is no code, with the rung that is to blame.
