@@ -18,6 +18,7 @@ pub mod interface;
 pub mod ladder;
 pub mod logic;
 pub mod lower;
+pub mod mathematics;
 pub mod opt;
 pub mod replay;
 pub mod simulate;
