@@ -7,6 +7,7 @@
 mod body;
 mod expression;
 mod frame;
+mod helper;
 mod library;
 mod operation;
 
@@ -16,36 +17,19 @@ use super::header::{INCLUDES, declarations, head};
 use super::names;
 use super::notes::{Notes, comment};
 use super::structure::Structure;
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::Diagnostic;
 use crate::interface::Interface;
-use crate::logic::{Op, Program, verify};
+use crate::logic::{Program, verify};
 use crate::source::Span;
-use body::Body;
+use body::{Body, Places};
 use library::Library;
 
 /// A verified program as C.
 ///
 /// # Errors
-/// What [`validate`] says.
+/// [`Code::NotACName`](crate::diagnostic::Code::NotACName) for every name that C cannot spell.
 pub fn emit(program: &Program, interface: &Interface) -> Result<String, Vec<Diagnostic>> {
     emit_with(program, interface, &Notes::default())
-}
-
-/// Says all that keeps a program from being written as C.
-///
-/// # Errors
-/// [`Code::NotACName`] for every name that C cannot spell; [`Code::CannotCompile`] for operations that there are not in C.
-pub fn validate(program: &Program, interface: &Interface) -> Result<(), Vec<Diagnostic>> {
-    let mut problems = names::validate(program, interface, &|_, _| Span::default()).err().unwrap_or_default();
-    let called = program.instructions.iter().find_map(|instruction| match instruction.op {
-        Op::Call(helper, ..) => Some(helper),
-        _ => None,
-    });
-    if let Some(helper) = called {
-        let message = format!("there is no `{}` in emitted C yet", helper.mnemonic());
-        problems.push(Diagnostic::new(Code::CannotCompile, Span::default(), message));
-    }
-    if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
 /// A verified program as C, with comments from its source.
@@ -54,13 +38,15 @@ pub fn validate(program: &Program, interface: &Interface) -> Result<(), Vec<Diag
 /// As [`emit`].
 pub fn emit_with(program: &Program, interface: &Interface, notes: &Notes) -> Result<String, Vec<Diagnostic>> {
     debug_assert_eq!(verify(program), Ok(()), "emitters take verified programs only");
-    validate(program, interface)?;
+    names::validate(program, interface, &|_, _| Span::default())?;
     let mut structure = Structure::new(program);
     let (definition, clock) = structure.text(interface, notes);
     let mut library = Library::default();
     let chunks = chunks(program, &structure, notes, interface.prefix());
     let frame = frame::frame(program, &structure, interface, &clock, &chunks);
     chunks.iter().for_each(|chunk| library.take_calls(&chunk.text));
+    let helpers: String = helper::definitions(&chunks.iter().map(|chunk| chunk.text.as_str()).collect::<String>());
+    library.take_calls(&helpers);
     library.take_calls(&frame);
 
     let mut text = head(program, notes, "the program as C");
@@ -74,6 +60,7 @@ pub fn emit_with(program: &Program, interface: &Interface, notes: &Notes) -> Res
         text.push_str(&APART.replace("@P", interface.prefix()));
     }
     text.push_str(&library.text());
+    text.push_str(&helpers);
     for chunk in &chunks {
         text.push_str(&chunk.text);
     }
@@ -100,7 +87,7 @@ fn chunks(program: &Program, structure: &Structure<'_>, notes: &Notes, prefix: &
         .collect();
     let apart = if sections.len() > 1 { format!("{prefix}_APART ") } else { String::new() };
     let chunk = |(number, sections): (usize, std::ops::Range<usize>)| {
-        let mut body = Body::new(program, structure, program.instruction_range(sections.clone()));
+        let mut body = Body::new(program, Places::Image(structure), program.instruction_range(sections.clone()));
         for section in sections.clone() {
             body.heading(&heading(program, section, notes));
             for place in program.section_range(section) {

@@ -33,10 +33,35 @@ enum State {
     Named(Form),
 }
 
+/// Where slots lie.
+#[derive(Clone, Copy)]
+pub(super) enum Places<'a> {
+    /// In the structure that `image` points to.
+    Image(&'a Structure<'a>),
+    /// In variables of these names, of which none is part of an array.
+    Variables(&'a [&'a str]),
+}
+
+impl Places<'_> {
+    fn slot(self, slot: SlotId) -> String {
+        match self {
+            Self::Image(structure) => format!("image->{}", structure.access(slot)),
+            Self::Variables(names) => names[slot.index()].to_owned(),
+        }
+    }
+
+    fn pointer(self, slot: SlotId) -> String {
+        match self {
+            Self::Image(structure) => structure.pointer(slot),
+            Self::Variables(names) => format!("&{}", names[slot.index()]),
+        }
+    }
+}
+
 /// The statements of some sections.
 pub(super) struct Body<'a> {
     pub(super) program: &'a Program,
-    structure: &'a Structure<'a>,
+    places: Places<'a>,
     /// The first instruction.
     first: usize,
     states: Vec<State>,
@@ -57,11 +82,11 @@ struct Line {
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(program: &'a Program, structure: &'a Structure<'a>, instructions: Range<usize>) -> Self {
+    pub(super) fn new(program: &'a Program, places: Places<'a>, instructions: Range<usize>) -> Self {
         let count = instructions.len();
         let mut body = Self {
             program,
-            structure,
+            places,
             first: instructions.start,
             states: std::iter::repeat_with(|| State::Nothing).take(count).collect(),
             uses: vec![0; count],
@@ -142,7 +167,7 @@ impl<'a> Body<'a> {
         match instruction.op {
             Op::Store(slot, value) => {
                 let taken = self.storable(value);
-                let access = self.structure.access(slot);
+                let access = self.places.slot(slot);
                 // What else uses it reads it there, unless it has a name or is such a reading or a constant itself.
                 let at = value.index() - self.first;
                 let is_simple = |expression: &Expression| {
@@ -154,9 +179,9 @@ impl<'a> Body<'a> {
                     self.states[at] = State::Nothing;
                 }
                 self.before_store(slot..SlotId(slot.0.saturating_add(1)));
-                self.statement(&format!("image->{access} = {};", taken.text));
+                self.statement(&format!("{access} = {};", taken.text));
                 if moves {
-                    self.keep(value, Expression::load(format!("image->{access}"), slot));
+                    self.keep(value, Expression::load(access, slot));
                 }
             }
             Op::StoreIndexed(array, index, value) => {
@@ -182,8 +207,7 @@ impl<'a> Body<'a> {
                 }
             }
             Op::Load(slot) => {
-                let access = self.structure.access(slot);
-                self.keep(id, Expression::load(format!("image->{access}"), slot));
+                self.keep(id, Expression::load(self.places.slot(slot), slot));
             }
             Op::LoadIndexed(array, index) => {
                 let index = self.exact(index);
@@ -214,6 +238,10 @@ impl<'a> Body<'a> {
             }
             Op::Convert(a) => {
                 let made = self.convert(a, instruction.ty);
+                self.made(id, made);
+            }
+            Op::Reinterpret(a) => {
+                let made = self.reinterpret(a, instruction.ty);
                 self.made(id, made);
             }
             Op::Call(helper, a, b) => {
@@ -248,6 +276,12 @@ impl<'a> Body<'a> {
         self.define(Some(id), &format!("const {} {id} = {};", c_type(ty), value.text));
         let form = if value.form == Form::Unsettled { Form::Unsettled } else { Form::Exact };
         self.states[id.index() - self.first] = State::Named(form);
+    }
+
+    /// The name of a value that was taken, given to it for this use and all later ones.
+    pub(super) fn named(&mut self, id: ValueId, taken: &Expression) -> Expression {
+        self.name(id, taken);
+        Expression::name(id.to_string())
     }
 
     /// Names what is still to be used of what reads some slots.
@@ -320,7 +354,7 @@ impl<'a> Body<'a> {
     /// A pointer to an array, how many elements it has, and of which type.
     fn array(&self, array: ArrayId) -> (String, u32, Elementary) {
         let array = self.program.layout.array(array);
-        (self.structure.pointer(array.first), array.count, self.program.layout.slot(array.first).ty)
+        (self.places.pointer(array.first), array.count, self.program.layout.slot(array.first).ty)
     }
 }
 

@@ -76,6 +76,15 @@ pub(super) fn function(stem: &str, short: &str) -> String {
     if short.is_empty() { stem.to_owned() } else { format!("{stem}_{short}") }
 }
 
+/// The names that a text calls, functions and macros alike.
+pub(super) fn called(text: &str) -> impl Iterator<Item = &str> {
+    let is_part = |character: char| character.is_ascii_alphanumeric() || character == '_';
+    text.match_indices('(').map(move |(open, _)| {
+        let before = &text[..open];
+        &before[before.rfind(|character| !is_part(character)).map_or(0, |end| end + 1)..]
+    })
+}
+
 /// A function's places in the tables of functions and types.
 fn find(stem: &str, short: &str) -> Option<(usize, usize)> {
     let routine = routines().position(|routine| {
@@ -87,11 +96,7 @@ fn find(stem: &str, short: &str) -> Option<(usize, usize)> {
 impl Library {
     /// Takes all that a text calls.
     pub(super) fn take_calls(&mut self, text: &str) {
-        let is_part = |character: char| character.is_ascii_alphanumeric() || character == '_';
-        for (open, _) in text.match_indices('(') {
-            let before = &text[..open];
-            let start = before.rfind(|character| !is_part(character)).map_or(0, |end| end + 1);
-            let name = &before[start..];
+        for name in called(text) {
             let (stem, short) = name.split_once('_').unwrap_or((name, ""));
             self.take(stem, short);
         }

@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::expression::{Binding, Expression, Form, ring};
+use super::helper;
 use super::library::{function, short};
 use crate::elementary::{Elementary, Value, canonical};
 use crate::emit::structure::c_type;
@@ -151,9 +152,9 @@ impl Body<'_> {
         }
     }
 
-    pub(super) fn compare(&mut self, op: Compare, a: ValueId, b: ValueId) -> Expression {
-        let ty = self.ty(a);
-        let (a, b) = (self.exact(a), self.exact(b));
+    pub(super) fn compare(&mut self, op: Compare, a_id: ValueId, b_id: ValueId) -> Expression {
+        let ty = self.ty(a_id);
+        let (a, b) = (self.exact(a_id), self.exact(b_id));
         let bool = Elementary::Bool;
         if let Some(known) = known(op, ty, &a, &b) {
             return Expression::constant(bool, u64::from(known));
@@ -184,6 +185,10 @@ impl Body<'_> {
                 Compare::Equal | Compare::NotEqual => {}
             }
         }
+        // Compilers see where bits are compared with what they can never be, and warn.
+        let bits = |of: &Expression| [" & ", " | "].iter().any(|operator| of.text.contains(operator));
+        let a = if b.constant.is_some() && bits(&a) { self.named(a_id, &a) } else { a };
+        let b = if a.constant.is_some() && bits(&b) { self.named(b_id, &b) } else { b };
         let operator = match op {
             Compare::Equal => "==",
             Compare::NotEqual => "!=",
@@ -239,6 +244,24 @@ impl Body<'_> {
         }
     }
 
+    pub(super) fn reinterpret(&mut self, a: ValueId, to: Elementary) -> Expression {
+        let from = self.ty(a);
+        match (from.is_real(), to.is_real()) {
+            (true, false) => {
+                let a = self.storable(a);
+                let bits = Expression::call(&self.function("bits", from), &[&a], Form::Exact);
+                if c_type(to) == ring(from) { bits } else { bits.cast(c_type(to), Form::Exact) }
+            }
+            (false, true) => {
+                let a = self.exact(a);
+                let a = if c_type(from) == ring(to) { a } else { a.cast(ring(to), Form::Exact) };
+                Expression::call(&self.function("real", to), &[&a], Form::Exact)
+            }
+            // Of one width, the low bits are all.
+            (true, true) | (false, false) => self.convert(a, to),
+        }
+    }
+
     pub(super) fn call(&mut self, helper: Helper, a: ValueId, b: Option<ValueId>) -> Expression {
         let ty = self.ty(a);
         let mut lreal = |id: ValueId| {
@@ -248,7 +271,7 @@ impl Body<'_> {
         let mut arguments = vec![lreal(a)];
         arguments.extend(b.map(lreal));
         let arguments: Vec<&Expression> = arguments.iter().collect();
-        let made = Expression::call(&format!("{}_f64", helper.mnemonic()), &arguments, Form::Unsettled);
+        let made = Expression::call(&helper::name(helper), &arguments, Form::Unsettled);
         if ty == Elementary::Real { made.cast("float", Form::Unsettled) } else { made }
     }
 }
