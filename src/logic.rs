@@ -26,7 +26,7 @@ pub use build::Builder;
 pub use image::{Area, Array, ArrayId, Layout, LayoutBuilder, Slot, SlotId};
 pub use op::{Binary, Compare, Domain, Helper, Instruction, Op, Unary, ValueId};
 pub use parse::parse;
-pub use print::print;
+pub use print::{literal, print};
 pub use task::{Task, Turn};
 pub use verify::{Problem, verify};
 
