@@ -1,8 +1,8 @@
 //! The textbook interpreter: one instruction after another, by one `match`, over an array of registers.
 //!
 //! It is what an interpreter is usually made like, and made well: operands are decoded once, constants wait in their
-//! registers, and the operations that ladders consist of have an arm each; all others are the [`Executor`]'s. It must stay without any other trick, so that a reader believes it, and a speed-up measured over it is one over the
-//! usual interpreter.
+//! registers, and the operations that ladders consist of have an arm each; all others are the [`Executor`]'s. It must stay
+//! without any other trick, so that a reader believes it, and a speed-up measured over it is one over the usual interpreter.
 
 use std::ops::Range;
 
