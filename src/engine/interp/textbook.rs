@@ -9,8 +9,8 @@ use std::ops::Range;
 use rung_runtime::Scan;
 
 use crate::elementary::{Elementary, Value};
-use crate::logic::image::{read, write};
 use crate::logic::execute::Executor;
+use crate::logic::image::{read, write};
 use crate::logic::{Binary, Compare, Instruction, Op, Program, Turn, Unary, ValueId, verify};
 
 /// A program, interpreted instruction by instruction.
