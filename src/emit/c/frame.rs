@@ -165,7 +165,7 @@ fn scan(text: &mut String, program: &Program, structure: &Structure<'_>, prefix:
     if !uses_now {
         text.push_str("    (void)now;\n");
     }
-    let _ = write!(text, "{body}}}\n");
+    let _ = writeln!(text, "{body}}}");
 }
 
 fn cycle(text: &mut String, layout: &Layout, interface: &Interface, clock: &Clock) {

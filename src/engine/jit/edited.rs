@@ -102,8 +102,8 @@ impl Edited {
             kept[last] = Some(old_last);
         }
         let mut by_length: HashMap<usize, Vec<usize>> = HashMap::new();
-        for of in first..old_last {
-            by_length.entry(self.program.instruction_range(old[of].clone()).len()).or_default().push(of);
+        for (of, sections) in old.iter().enumerate().take(old_last).skip(first) {
+            by_length.entry(self.program.instruction_range(sections.clone()).len()).or_default().push(of);
         }
         for new in first..last {
             let candidates = by_length.get(&program.instruction_range(sections[new].clone()).len());
