@@ -6,6 +6,7 @@
 pub mod both;
 pub mod clif;
 pub mod disassemble;
+pub mod elide;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
