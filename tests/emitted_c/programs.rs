@@ -41,6 +41,9 @@ fn examples() -> Vec<Program> {
     paths.iter().map(read).collect()
 }
 
+/// Nanoseconds from one scan to the next, over and over.
+const STEPS: [i64; 5] = [0, 1_000_000, 100_000_000, 730_000_000, 5_000_000_000];
+
 /// Runs programs under random inputs, over times that timers take.
 fn agrees(compiler: Compiler, programs: &[Program], scans: u64) {
     let mut rig = Rig::new(compiler, programs, 1_000_000);
@@ -61,7 +64,7 @@ fn agrees(compiler: Compiler, programs: &[Program], scans: u64) {
             let before = image.clone();
             interpreter.scan(&mut image, now);
             rig.scan(number, now, &before, &image);
-            now += [0, 1_000_000, 100_000_000, 730_000_000, 5_000_000_000][scan as usize % 5];
+            now += STEPS[usize::try_from(scan).unwrap_or_default() % STEPS.len()];
         }
     }
     rig.finish();
