@@ -1,7 +1,7 @@
 //! Executing instructions one after another, each as [`evaluate`] defines it.
 //!
-//! This is what a program means: the textbook interpreter is made of it, and the checker of the passes. It must stay
-//! without any trick, so that a reader believes it.
+//! This is what a program means, for whoever compares programs and may know no engine, as the checker of the passes. It
+//! must stay without any trick, so that a reader believes it.
 
 use std::ops::Range;
 
