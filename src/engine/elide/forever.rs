@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use crate::elementary::{Elementary, Value, canonical};
 use crate::logic::image::FAULT;
-use crate::logic::{Area, Array, Binary, Compare, Instruction, Layout, Op, Program, SlotId, Unary, ValueId, evaluate};
+use crate::logic::{Area, Array, Binary, Compare, Instruction, Layout, Op, Program, SlotId, ValueId, evaluate};
 
 /// How far ahead of the present time is looked, in nanoseconds: 73 years. No sum of such times overflows.
 pub(super) const HORIZON: i64 = 1 << 61;
