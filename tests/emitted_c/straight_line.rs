@@ -72,7 +72,7 @@ fn compilers_make_no_branch_of_the_rungs_of_the_examples() {
             .any(|made| matches!(made.op, Op::CopyArray(..) | Op::Call(..)) || made.ty.is_real())
     };
     let examples: Vec<Program> = examples().into_iter().filter(plain).collect();
-    assert!(examples.len() >= 10, "only {} examples", examples.len());
+    assert!(examples.len() >= 6, "only {} examples", examples.len());
     for (number, program) in examples.iter().enumerate() {
         let text = emit::c::emit(program, &Interface::default()).expect("names of C");
         // Inlined into the scan, they could not be told from the test whether a task is due.
