@@ -186,9 +186,9 @@ impl Body<'_> {
             }
         }
         // Compilers see where bits are compared with what they can never be, and warn.
-        let bits = |of: &Expression| [" & ", " | "].iter().any(|operator| of.text.contains(operator));
-        let a = if b.constant.is_some() && bits(&a) { self.named(a_id, &a) } else { a };
-        let b = if a.constant.is_some() && bits(&b) { self.named(b_id, &b) } else { b };
+        let bits = |of: &Expression| [" & ", " | ", " ^ "].iter().any(|operator| of.text.contains(operator));
+        let a = if bits(&a) && !ty.is_real() { self.named(a_id, &a) } else { a };
+        let b = if bits(&b) && !ty.is_real() { self.named(b_id, &b) } else { b };
         let operator = match op {
             Compare::Equal => "==",
             Compare::NotEqual => "!=",
