@@ -133,6 +133,10 @@ codes! {
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
     EnginesDiffer = 902 Error "two engines compute different values",
+    // Lanes and assertions.
+    BadAssertion = 920 Error "an assertion that cannot be used",
+    AssertionFails = 921 Error "an assertion does not hold",
+    CannotBatch = 922 Error "so many plants cannot be run",
     // Running.
     BadTiming = 1001 Error "times that do not go together",
     CannotStart = 1002 Error "the program cannot be started",

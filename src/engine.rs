@@ -9,3 +9,4 @@ pub mod disassemble;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
+pub mod lanes;

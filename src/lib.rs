@@ -5,6 +5,7 @@
 //! [`frontend`] reads bytes into a [`ladder::Program`]; [`check`] resolves it to a [`check::Checked`]; [`lower`]
 //! turns that into one straight-line scan of [`logic`], which [`opt`] improves and [`engine`] interprets or compiles.
 
+pub mod batch;
 pub mod check;
 pub mod cli;
 pub mod diagnostic;
@@ -21,3 +22,5 @@ pub mod replay;
 pub mod simulate;
 pub mod source;
 pub mod trace;
+
+pub use batch::Batch;

@@ -3,6 +3,7 @@
 //! Code generation is [`clif`]'s; here it is installed and called, and nothing else.
 
 mod memory;
+pub(super) mod segments;
 #[cfg(test)]
 mod tests;
 

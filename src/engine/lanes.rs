@@ -1,0 +1,250 @@
+//! Lanes: 128 plants of one program in one pass, a bit each.
+//!
+//! A BOOL is a word of 128 bits, so that one vector instruction does an operation for all lanes. Everything else is,
+//! in general, a column of 128 values ([`columns`]). What timers keep needs neither: it is recognised by the flow of
+//! values, and only *when* it was set is kept ([`recognise`] has the proof, [`track`] and [`history`] the means).
+//! Every lane computes exactly what a scalar engine does: `now` is one for all lanes, nothing is quantised, and what
+//! cannot be told in this way is refused ([`Refused`]), never computed otherwise.
+//!
+//! [`plan`] sorts a program's operations, [`compile`] makes code of those on words. No engine may know a block.
+
+mod columns;
+mod compile;
+mod history;
+mod plan;
+mod recognise;
+mod track;
+mod word;
+
+#[cfg(test)]
+mod tests;
+
+pub(in crate::engine) use compile::Code;
+pub(in crate::engine) use word::Word;
+
+use super::clif::CompileError;
+use super::jit::host_isa;
+use super::jit::segments::Segments;
+use crate::elementary::Value;
+use crate::logic::{Layout, LayoutBuilder, Program, SlotId, Task, Turn, verify};
+use columns::Columns;
+use history::History;
+use plan::{Home, Piece, Plan};
+use track::Tracks;
+
+/// Lanes that a pass runs.
+pub const LANES: usize = 128;
+
+/// The most words that code can reach.
+const MOST_WORDS: usize = 1 << 26;
+
+/// What the lanes of a group cannot do, since it would not be the same for all of them, or not in order: a scalar engine
+/// can, for each lane on its own.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Refused;
+
+/// A program, compiled for lanes.
+#[derive(Debug)]
+pub struct Lanes {
+    layout: Layout,
+    plan: Plan,
+    segments: Segments,
+    /// By task: when it is due, over an image of nothing but that, and where there.
+    turns: Vec<Turn>,
+    dues: Layout,
+    /// Whether every task runs in every round.
+    all_run: bool,
+}
+
+/// 128 plants: all that they hold.
+#[derive(Clone, Debug)]
+pub struct Group {
+    words: Vec<Word>,
+    columns: Columns,
+    tracks: Tracks,
+    history: History,
+    /// When each task is due next.
+    dues: Vec<u8>,
+}
+
+impl Lanes {
+    /// Compiles a verified program for this machine, on all its cores.
+    ///
+    /// # Errors
+    /// When there is no back end for this machine, or none for its vectors; when the program is too large; or when
+    /// memory is refused.
+    pub fn compile(program: &Program) -> Result<Self, CompileError> {
+        Self::compile_as(program, true)
+    }
+
+    /// The same; `recognises` is off where all is to take the general path, for tests.
+    fn compile_as(program: &Program, recognises: bool) -> Result<Self, CompileError> {
+        debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
+        let plan = Plan::of(program, recognises);
+        if plan.words.max(plan.row_words) > MOST_WORDS {
+            let reason = format!("its lanes have {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words);
+            return Err(CompileError::Chunk { sections: 0..program.sections.len(), reason });
+        }
+        let isa = host_isa()?;
+        let pieces = plan.tasks.iter().flatten();
+        let segments: Vec<&[plan::BitOp]> = pieces
+            .filter_map(|piece| match piece {
+                Piece::Segment(ops) => Some(ops.as_slice()),
+                Piece::Steps(_) => None,
+            })
+            .collect();
+        let code = compile::segments(&segments, &*isa)?;
+        let segments = Segments::install(&code, plan.words, plan.row_words).map_err(CompileError::Memory)?;
+        let (turns, dues) = turns(program);
+        let all_run = program.tasks.iter().all(|task| task.interval.is_none());
+        Ok(Self { layout: program.layout.clone(), plan, segments, turns, dues, all_run })
+    }
+
+    /// 128 plants before the first scan: every slot at its initial value.
+    pub fn group(&self) -> Group {
+        let presets = self.plan.presets.iter().map(|preset| preset.nanoseconds);
+        let mut group = Group {
+            words: vec![Word::ZEROS; self.plan.words],
+            columns: Columns::new(self.plan.columns),
+            tracks: Tracks::new(&self.plan),
+            history: History::new(presets),
+            dues: self.dues.initial_image(),
+        };
+        group.words[plan::TRUE_WORD as usize] = Word::ONES;
+        for (column, bits) in &self.plan.constants {
+            group.columns.fill(*column, *bits);
+        }
+        for (home, slot) in self.plan.homes.iter().zip(self.layout.slots()) {
+            match home {
+                Home::Word(word) => group.words[*word as usize] = Word::all(slot.initial.is_true()),
+                Home::Column(column) => group.columns.fill(*column, slot.initial.bits()),
+                Home::Tracked(_) | Home::Due(_) => {}
+            }
+        }
+        group
+    }
+
+    /// Runs one scan in every lane.
+    ///
+    /// # Errors
+    /// [`Refused`] when `now` is before that of the last scan, or below 0; or after 2^32 scans. Nothing is done then.
+    ///
+    /// # Panics
+    /// When the group is another program's.
+    pub fn scan(&self, group: &mut Group, now: i64) -> Result<(), Refused> {
+        let Group { words, columns, tracks, history, dues } = group;
+        if !history.accepts(now) {
+            return Err(Refused);
+        }
+        let scan = history.begin(now);
+        tracks.begin(&self.plan, history, words, self.all_run);
+        let row = tracks.row(scan);
+        let mut segment = 0;
+        for (turn, pieces) in self.turns.iter().zip(&self.plan.tasks) {
+            let runs = turn.take(dues, now);
+            for piece in pieces {
+                match piece {
+                    Piece::Segment(_) => {
+                        if runs {
+                            self.segments.run(segment, words, row);
+                        }
+                        segment += 1;
+                    }
+                    Piece::Steps(steps) if runs => {
+                        steps.iter().for_each(|step| columns.execute(step, words, now));
+                    }
+                    Piece::Steps(_) => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a slot in a lane.
+    ///
+    /// # Panics
+    /// When there is no such slot or lane, or the group is another program's.
+    pub fn get(&self, group: &Group, lane: usize, slot: SlotId) -> Value {
+        let ty = self.layout.slot(slot).ty;
+        let bits = match self.plan.homes[slot.index()] {
+            Home::Word(word) => u64::from(group.words[word as usize].get(lane)),
+            Home::Column(column) => group.columns.get(column, lane),
+            Home::Tracked(index) => group.tracks.get(&self.plan, &group.history, index, lane),
+            Home::Due(task) => self.due(group, task).bits(),
+        };
+        Value::from_bits(ty, bits)
+    }
+
+    /// Sets a slot in a lane; bits outside its type are dropped.
+    ///
+    /// # Errors
+    /// [`Refused`] when the slot keeps the time of a scan, as a timer's start does, or when a task is due next, and the
+    /// value is another than it has.
+    ///
+    /// # Panics
+    /// As [`Lanes::get`].
+    pub fn set(&self, group: &mut Group, lane: usize, slot: SlotId, value: Value) -> Result<(), Refused> {
+        let value = Value::from_bits(self.layout.slot(slot).ty, value.bits());
+        match self.plan.homes[slot.index()] {
+            Home::Word(word) => group.words[word as usize].set(lane, value.is_true()),
+            Home::Column(column) => group.columns.set(column, lane, value.bits()),
+            Home::Tracked(_) | Home::Due(_) if self.get(group, lane, slot) == value => {}
+            Home::Tracked(index) if group.tracks.set(&self.plan, index, lane, value.bits()) => {}
+            Home::Tracked(_) | Home::Due(_) => return Err(Refused),
+        }
+        Ok(())
+    }
+
+    /// A BOOL slot in all lanes, lane 0 the lowest bit; of another slot, whether it is other than 0.
+    ///
+    /// # Panics
+    /// When there is no such slot, or the group is another program's.
+    pub fn word(&self, group: &Group, slot: SlotId) -> u128 {
+        match self.plan.homes[slot.index()] {
+            Home::Word(word) => group.words[word as usize].into(),
+            Home::Column(_) | Home::Tracked(_) | Home::Due(_) => {
+                let holds = |lane: usize| u128::from(self.get(group, lane, slot).is_true()) << lane;
+                (0..LANES).map(holds).sum()
+            }
+        }
+    }
+
+    /// Sets a BOOL slot in all lanes, lane 0 the lowest bit. A slot of another type stays as it is.
+    ///
+    /// # Panics
+    /// When there is no such slot, or the group is another program's.
+    pub fn set_word(&self, group: &mut Group, slot: SlotId, bits: u128) {
+        if let Home::Word(word) = self.plan.homes[slot.index()] {
+            group.words[word as usize] = bits.into();
+        }
+    }
+
+    fn due(&self, group: &Group, task: usize) -> Value {
+        // Those of the tasks before it are before it.
+        let periodic = self.turns[..task].iter().filter(|turn| **turn != Turn::default()).count();
+        self.dues.slots()[periodic].read(&group.dues)
+    }
+
+    /// Slots that take the general path, a value for each lane: how many of how many.
+    pub fn general(&self) -> (usize, usize) {
+        let columns = self.plan.homes.iter().filter(|home| matches!(home, Home::Column(_)));
+        (columns.count(), self.plan.homes.len())
+    }
+}
+
+/// When each task is due, over an image of its own of nothing but that.
+fn turns(program: &Program) -> (Vec<Turn>, Layout) {
+    let mut layout = LayoutBuilder::new();
+    let own: Vec<Option<SlotId>> = program
+        .tasks
+        .iter()
+        .map(|task| {
+            let slot = task.interval.and(task.due).map(|due| program.layout.slot(due).clone())?;
+            Some(layout.slot(slot))
+        })
+        .collect();
+    // Eight bytes a task, of an image that has as many.
+    let layout = layout.finish(None).unwrap_or_else(|_| unreachable!("it is a part of an image that is small enough"));
+    let turns = program.tasks.iter().zip(own).map(|(task, due)| Turn::of(&Task { due, ..task.clone() }, &layout));
+    (turns.collect(), layout)
+}
