@@ -29,9 +29,7 @@ mod part;
 mod random;
 
 use std::collections::HashMap;
-use std::num::NonZero;
-use std::sync::Mutex;
-use std::sync::PoisonError;
+use std::sync::{Mutex, PoisonError};
 
 pub use error::BatchError;
 pub use part::Part;
@@ -42,13 +40,14 @@ use crate::engine::interp::Interpreter;
 pub use crate::engine::lanes::LANES;
 use crate::engine::lanes::Lanes;
 use crate::logic::{Program, SlotId};
+use crate::parallel;
 use part::State;
 
 /// Bytes that all images together may have.
 const MOST_BYTES: u64 = 1 << 36;
 
 /// Instructions that a core should have to do for it to be worth waking it for one scan.
-const WORTH_A_THREAD: usize = 100_000;
+const WORTH_A_THREAD: usize = 1_000_000;
 
 /// Many plants of one program.
 #[derive(Debug)]
@@ -194,35 +193,14 @@ impl Batch {
     /// Does something with every part, on all cores, such as many scans with inputs before each: parts need not wait for one
     /// another. Gives the results in the order of the parts.
     pub fn each<R: Send>(&mut self, work: impl Fn(Part<'_>) -> R + Sync) -> Vec<R> {
-        let (shared, lanes, count) = (&self.shared, self.lanes, self.parts.len());
-        let workers = std::thread::available_parallelism().map_or(1, NonZero::get).min(count);
-        let open = Mutex::new(self.parts.iter_mut().enumerate());
-        let run = || {
-            let mut done = Vec::new();
-            loop {
-                // The lock ends here: the work is done without it.
-                let next = open.lock().unwrap_or_else(PoisonError::into_inner).next();
-                let Some((index, state)) = next else { return done };
-                done.push((index, work(Part::of(shared, state, index, lanes))));
-            }
+        let (shared, lanes) = (&self.shared, self.lanes);
+        let parts: Vec<Mutex<&mut State>> = self.parts.iter_mut().map(Mutex::new).collect();
+        let run = |_: &mut (), index: usize| {
+            // Each is locked once: this only hands it over.
+            let mut state = parts[index].lock().unwrap_or_else(PoisonError::into_inner);
+            work(Part::of(shared, &mut state, index, lanes))
         };
-        let mut done = if workers <= 1 {
-            run()
-        } else {
-            std::thread::scope(|scope| {
-                let others: Vec<_> = (1..workers).map(|_| scope.spawn(run)).collect();
-                let mut done = run();
-                for other in others {
-                    match other.join() {
-                        Ok(more) => done.extend(more),
-                        Err(panic) => std::panic::resume_unwind(panic),
-                    }
-                }
-                done
-            })
-        };
-        done.sort_unstable_by_key(|(index, _)| *index);
-        done.into_iter().map(|(_, result)| result).collect()
+        parallel::each(parts.len(), || (), run)
     }
 
     /// The process image of a lane, as a scalar engine would leave it.

@@ -18,6 +18,7 @@ pub mod ladder;
 pub mod logic;
 pub mod lower;
 pub mod opt;
+mod parallel;
 pub mod replay;
 pub mod simulate;
 pub mod source;

@@ -26,7 +26,7 @@ use super::clif::CompileError;
 use super::jit::host_isa;
 use super::jit::segments::Segments;
 use crate::elementary::Value;
-use crate::logic::{Layout, LayoutBuilder, Program, SlotId, Task, Turn, verify};
+use crate::logic::{ArrayId, Layout, LayoutBuilder, Op, Program, SlotId, Task, Turn, verify};
 use columns::Columns;
 use history::History;
 use plan::{Home, Piece, Plan};
@@ -71,8 +71,8 @@ impl Lanes {
     /// Compiles a verified program for this machine, on all its cores.
     ///
     /// # Errors
-    /// When there is no back end for this machine, or none for its vectors; when the program is too large; or when
-    /// memory is refused.
+    /// When there is no back end for this machine, or none for its vectors; when the program is too large, or looks at
+    /// when its own tasks are due; or when memory is refused.
     pub fn compile(program: &Program) -> Result<Self, CompileError> {
         Self::compile_as(program, true)
     }
@@ -80,10 +80,13 @@ impl Lanes {
     /// The same; `recognises` is off where all is to take the general path, for tests.
     fn compile_as(program: &Program, recognises: bool) -> Result<Self, CompileError> {
         debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
+        let refused = |reason: String| CompileError::Chunk { sections: 0..program.sections.len(), reason };
+        if touches_turns(program) {
+            return Err(refused("its rungs look at when a task is due, which lanes have in common".to_owned()));
+        }
         let plan = Plan::of(program, recognises);
         if plan.words.max(plan.row_words) > MOST_WORDS {
-            let reason = format!("its lanes have {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words);
-            return Err(CompileError::Chunk { sections: 0..program.sections.len(), reason });
+            return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;
         let pieces = plan.tasks.iter().flatten();
@@ -230,6 +233,25 @@ impl Lanes {
         let columns = self.plan.homes.iter().filter(|home| matches!(home, Home::Column(_)));
         (columns.count(), self.plan.homes.len())
     }
+}
+
+/// Whether any instruction loads or stores a slot in which a task keeps when it is due. Lowered programs have none.
+fn touches_turns(program: &Program) -> bool {
+    let dues: Vec<SlotId> = program.tasks.iter().filter_map(|task| task.due).collect();
+    let within = |array: ArrayId| dues.iter().any(|due| program.layout.array(array).slots().contains(due));
+    program.instructions.iter().any(|instruction| match instruction.op {
+        Op::Load(slot) | Op::Store(slot, _) => dues.contains(&slot),
+        Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => within(array),
+        Op::CopyArray(to, from, _) => within(to) || within(from),
+        Op::Constant(_)
+        | Op::Now
+        | Op::Unary(..)
+        | Op::Binary(..)
+        | Op::Compare(..)
+        | Op::Select(..)
+        | Op::Convert(_)
+        | Op::Call(..) => false,
+    })
 }
 
 /// When each task is due, over an image of its own of nothing but that.

@@ -9,7 +9,6 @@
 //! ```
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, Function, InstBuilder, MemFlagsData, Signature, Type, UserFuncName, Value, types};
@@ -18,6 +17,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
 use super::plan::{Bit, BitOp, FALSE_WORD, TRUE_WORD};
 use crate::engine::clif::{self, CompileError};
+use crate::parallel;
 
 /// What holds a word.
 const WORD: Type = types::I8X16;
@@ -36,34 +36,11 @@ pub(in crate::engine) struct Code {
 /// # Errors
 /// That of the first segment that has one: when Cranelift refuses it.
 pub(super) fn segments(segments: &[&[BitOp]], isa: &dyn TargetIsa) -> Result<Vec<Code>, CompileError> {
-    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(segments.len());
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let (mut context, mut builder) = (Context::new(), FunctionBuilderContext::new());
-        let mut done = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(ops) = segments.get(index) else { return done };
-            done.push((index, segment(index, ops, isa, &mut context, &mut builder)));
-        }
+    let start = || (Context::new(), FunctionBuilderContext::new());
+    let work = |(context, builder): &mut (Context, FunctionBuilderContext), index: usize| {
+        segment(index, segments[index], isa, context, builder)
     };
-    let mut done: Vec<(usize, Result<Code, CompileError>)> = if workers <= 1 {
-        work()
-    } else {
-        std::thread::scope(|scope| {
-            let others: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
-            let mut done = work();
-            for other in others {
-                match other.join() {
-                    Ok(more) => done.extend(more),
-                    Err(panic) => std::panic::resume_unwind(panic),
-                }
-            }
-            done
-        })
-    };
-    done.sort_unstable_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, code)| code).collect()
+    parallel::each(segments.len(), start, work).into_iter().collect()
 }
 
 fn segment(

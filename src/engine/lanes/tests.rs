@@ -74,8 +74,14 @@ fn later(rng: &mut Pcg64, now: i64) -> i64 {
 
 #[test]
 fn every_operation_computes_in_every_lane_what_the_interpreter_says() {
+    let mut compared = 0;
     for seed in 0..200 {
         let program = random::program(seed);
+        if touches_turns(&program) {
+            assert!(Lanes::compile(&program).is_err());
+            continue;
+        }
+        compared += 1;
         let mut rig = Rig::new(&program, seed % 4 != 0);
         let mut rng = Pcg64::seed_from_u64(seed);
         for lane in 0..LANES {
@@ -99,6 +105,7 @@ fn every_operation_computes_in_every_lane_what_the_interpreter_says() {
             now = if scan == 4 { i64::MAX } else { later(&mut rng, now) };
         }
     }
+    assert!(compared > 100, "only {compared} programs were compared");
 }
 
 /// A program that is full of latches, of questions about them and of what is computed from them.
