@@ -133,6 +133,12 @@ codes! {
     // Engines.
     CannotCompile = 901 Error "the program cannot be compiled",
     EnginesDiffer = 902 Error "two engines compute different values",
+    UnknownTarget = 903 Error "a target that is not known",
+    BadIsa = 904 Error "an instruction set or ABI that cannot be",
+    NeedsFpu = 905 Error "reals on a target without floating point",
+    BadSymbol = 906 Error "a prefix that is no identifier of C",
+    TooLargeForTarget = 907 Error "the program is too large for the target",
+    NotACName = 911 Error "a name that C cannot have",
     // Lanes and assertions.
     BadAssertion = 920 Error "an assertion that cannot be used",
     AssertionFails = 921 Error "an assertion does not hold",

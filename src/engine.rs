@@ -10,3 +10,4 @@ pub mod helpers;
 pub mod interp;
 pub mod jit;
 pub mod lanes;
+pub mod target;

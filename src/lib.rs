@@ -14,6 +14,7 @@ pub mod elementary;
 pub mod engine;
 pub mod frontend;
 pub mod generate;
+pub mod interface;
 pub mod ladder;
 pub mod logic;
 pub mod lower;

@@ -1,13 +1,16 @@
-//! `rung build`: a program as logic, as Cranelift's intermediate form or as assembly, and the map of its image.
+//! `rung build`: a program as logic, as Cranelift's intermediate form or as assembly of a target, and the map of its
+//! image.
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::{Failure, Missing, load_checked, read_source, write_whole};
+use super::{Failure, Missing, duration, load_checked, read_source, write_whole};
 use crate::diagnostic::Code;
-use crate::engine::jit::{Jit, host_isa};
-use crate::engine::{clif, disassemble};
+use crate::engine::clif::{self, CompileError};
+use crate::engine::disassemble;
+use crate::engine::target::{BadTarget, Target};
+use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
@@ -29,6 +32,21 @@ pub(super) struct Arguments {
     /// Where to write it; `-` is the standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
+    /// Make code for this machine [default: the one that Rung runs on]
+    #[arg(long, value_name = "TRIPLE")]
+    target: Option<String>,
+    /// What its processor offers: an ISA string of RISC-V, such as rv64imac_zba, or features such as avx2,bmi1 or lse
+    #[arg(long, value_name = "ISA")]
+    isa: Option<String>,
+    /// How C passes reals on RISC-V: lp64, lp64f or lp64d [default: what the ISA allows]
+    #[arg(long, value_name = "ABI")]
+    abi: Option<String>,
+    /// What the names of all functions and data start with
+    #[arg(long, value_name = "PREFIX", default_value = DEFAULT_PREFIX)]
+    prefix: String,
+    /// The period of the timer interrupt [default: 1ms]
+    #[arg(long, value_name = "DURATION", value_parser = duration::parse)]
+    tick: Option<i64>,
     /// Stop after this pass; `lower` is before the first one, and an unknown one lists them
     #[arg(long, value_name = "PASS")]
     after: Option<String>,
@@ -44,26 +62,45 @@ pub(super) struct Arguments {
 enum Emit {
     /// The logic IR, as text
     Logic,
-    /// Cranelift's intermediate form for this machine
+    /// Cranelift's intermediate form for the target
     Clif,
-    /// This machine's code, disassembled
+    /// The target's code, disassembled
     Asm,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let passes = passes_until(arguments.after.as_deref())?;
+    Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
+        .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
+    let target = arguments.target()?;
     let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
     let earlier = arguments.previous_map.as_deref().map(read_map).transpose()?;
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
     let program = PASSES[..passes].iter().fold(program, |program, pass| (pass.run)(program));
-    // All texts are made before the first is written.
+    let built = Built { program: &program, target: target.as_ref() };
+    // All outputs are made before the first is written.
     let emit = arguments.emit.or(arguments.map.is_none().then_some(Emit::Logic));
-    let text = emit.map(|emit| emitted(emit, &program)).transpose()?;
+    let output = emit.map(|emit| built.emitted(emit)).transpose()?;
     if let Some(path) = &arguments.map {
         write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
     }
-    text.map_or(Ok(()), |text| write_whole(&arguments.output, text.as_bytes()))
+    output.map_or(Ok(()), |output| write_whole(&arguments.output, &output))
+}
+
+impl Arguments {
+    /// The target that was asked for; `None` where nothing of it was said.
+    fn target(&self) -> Result<Option<Target>, Failure> {
+        let refused = |refused: BadTarget| Failure::hinted(refused.code, refused.message, refused.hint);
+        let (isa, abi) = (self.isa.as_deref(), self.abi.as_deref());
+        match &self.target {
+            Some(triple) => Target::new(triple, isa, abi).map(Some).map_err(refused),
+            None if isa.is_some() || abi.is_some() => {
+                Target::new(&Target::host_triple(), isa, abi).map(Some).map_err(refused)
+            }
+            None => Ok(None),
+        }
+    }
 }
 
 /// How many passes run.
@@ -83,18 +120,51 @@ fn read_map(path: &Path) -> Result<EarlierLayout, Failure> {
     map::read_map(&source).map_err(|problem| Failure::diagnostics(&source, &[problem]))
 }
 
-fn emitted(emit: Emit, program: &Program) -> Result<String, Failure> {
-    let refused = |reason: String| Failure::new(Code::CannotCompile, reason);
-    match emit {
-        Emit::Logic => Ok(logic::print(program)),
-        Emit::Clif => {
-            let isa = host_isa().map_err(|error| refused(error.to_string()))?;
-            Ok(clif::text(program, &*isa))
+/// A program that is ready to be written in any form.
+struct Built<'a> {
+    program: &'a Program,
+    /// The target that was asked for.
+    target: Option<&'a Target>,
+}
+
+impl Built<'_> {
+    /// The target that was asked for, or the machine that Rung runs on with all that it has.
+    fn target(&self) -> Result<Target, Failure> {
+        self.target
+            .cloned()
+            .map_or_else(Target::host, Ok)
+            .map_err(|refused| Failure::hinted(refused.code, refused.message, refused.hint))
+    }
+
+    /// The bytes of a form.
+    fn emitted(&self, emit: Emit) -> Result<Vec<u8>, Failure> {
+        match emit {
+            Emit::Logic => Ok(logic::print(self.program).into_bytes()),
+            Emit::Clif => Ok(clif::text(self.program, &**self.target()?.isa()).into_bytes()),
+            Emit::Asm => {
+                let target = self.target()?;
+                let chunks = clif::compile(self.program, &target).map_err(|error| self.refused(&error))?;
+                let listing = disassemble::listing(self.program, &chunks, target.triple());
+                listing.map(String::into_bytes).map_err(|reason| Failure::new(Code::CannotCompile, reason))
+            }
         }
-        Emit::Asm => {
-            let isa = host_isa().map_err(|error| refused(error.to_string()))?;
-            let jit = Jit::compile(program).map_err(|error| refused(error.to_string()))?;
-            disassemble::listing(program, jit.chunks(), isa.triple()).map_err(refused)
+    }
+
+    /// That there is no code, with the rung that is to blame.
+    fn refused(&self, error: &CompileError) -> Failure {
+        let failure = |hint: &str| Failure::hinted(error.code(), error.to_string(), hint);
+        match error {
+            CompileError::NeedsFpu { section, target } => {
+                let section = &self.program.sections[*section];
+                let origin = &self.program.origins[section.origin as usize];
+                Failure::hinted(
+                    error.code(),
+                    format!("{} (line {}) computes with reals, and {target} cannot", origin.label, origin.line),
+                    "take an `--isa` with F and D, or a C compiler with its own arithmetic: `--emit c`",
+                )
+            }
+            CompileError::Chunk { .. } => failure("the interpreter runs it: `rung run --engine interp`"),
+            CompileError::NoBackEnd(_) | CompileError::Memory(_) => Failure::new(error.code(), error.to_string()),
         }
     }
 }

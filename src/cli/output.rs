@@ -29,6 +29,11 @@ impl Failure {
         Self::Error(format!("error[{code}]: {}\n", message.as_ref()))
     }
 
+    /// The same, with what to do about it.
+    pub(crate) fn hinted(code: Code, message: impl AsRef<str>, hint: impl AsRef<str>) -> Self {
+        Self::Error(format!("error[{code}]: {}\n  = hint: {}\n", message.as_ref(), hint.as_ref()))
+    }
+
     /// Diagnostics about one source.
     pub(crate) fn diagnostics(source: &Source, diagnostics: &[Diagnostic]) -> Self {
         Self::Error(diagnostic::render(source, diagnostics))

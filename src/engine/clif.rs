@@ -17,6 +17,7 @@
 mod array;
 mod integer;
 mod lower;
+mod parallel;
 mod place;
 mod real;
 #[cfg(all(test, feature = "all-targets"))]
@@ -35,8 +36,11 @@ use cranelift_codegen::{CodegenResult, CompiledCode, Context};
 use cranelift_frontend::FunctionBuilderContext;
 use target_lexicon::Architecture;
 
+use crate::diagnostic::Code;
 use crate::logic::{Binary, Op, Program, verify};
 use lower::Built;
+
+pub use parallel::compile;
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
 /// they fill the six registers for arguments of x86-64; with eight of them code is 2 bytes a rung shorter, but has
@@ -55,6 +59,13 @@ pub const MOVED: u32 = 1024;
 pub enum CompileError {
     /// Cranelift, as it was built, has no back end for this machine, or refuses a setting.
     NoBackEnd(String),
+    /// The program computes with reals that the target has no registers for.
+    NeedsFpu {
+        /// The target.
+        target: String,
+        /// The first section that does.
+        section: usize,
+    },
     /// Cranelift refused a chunk, as one with too many values for it.
     Chunk {
         /// The sections of the chunk.
@@ -70,6 +81,9 @@ impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoBackEnd(reason) => write!(f, "no code generator for this machine: {reason}"),
+            Self::NeedsFpu { target, section } => {
+                write!(f, "section {section} computes with reals, and {target} has no floating point for them")
+            }
             Self::Chunk { sections, reason } => {
                 write!(f, "sections {} to {} cannot be compiled: {reason}", sections.start, sections.end)
             }
@@ -82,7 +96,17 @@ impl std::error::Error for CompileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Memory(error) => Some(error),
-            Self::NoBackEnd(_) | Self::Chunk { .. } => None,
+            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } => None,
+        }
+    }
+}
+
+impl CompileError {
+    /// The code of the error.
+    pub fn code(&self) -> Code {
+        match self {
+            Self::NeedsFpu { .. } => Code::NeedsFpu,
+            Self::NoBackEnd(_) | Self::Chunk { .. } | Self::Memory(_) => Code::CannotCompile,
         }
     }
 }

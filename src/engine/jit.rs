@@ -9,13 +9,13 @@ mod tests;
 
 use std::io;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cranelift_codegen::isa::OwnedTargetIsa;
 use rung_runtime::Scan;
 
 pub use super::clif::CompileError;
-use super::clif::{self, Chunk, Compiler};
+use super::clif::{self, Chunk};
+use super::target::Target;
 use crate::logic::{Program, Turn};
 use memory::Code;
 
@@ -24,9 +24,11 @@ use memory::Code;
 /// # Errors
 /// [`CompileError::NoBackEnd`] when Cranelift was built without one.
 pub fn host_isa() -> Result<OwnedTargetIsa, CompileError> {
-    let builder = cranelift_native::builder().map_err(|reason| CompileError::NoBackEnd(reason.to_owned()))?;
-    let flags = clif::flags().map_err(|error| CompileError::NoBackEnd(error.to_string()))?;
-    builder.finish(flags).map_err(|error| CompileError::NoBackEnd(error.to_string()))
+    host().map(|target| target.isa().clone())
+}
+
+fn host() -> Result<Target, CompileError> {
+    Target::host().map_err(|refused| CompileError::NoBackEnd(refused.message))
 }
 
 /// A compiled program.
@@ -45,8 +47,7 @@ impl Jit {
     /// # Errors
     /// When there is no back end for this machine, a chunk passes Cranelift's limits, or memory is refused.
     pub fn compile(program: &Program) -> Result<Self, CompileError> {
-        let isa = host_isa()?;
-        let chunks = compile_chunks(program, &isa)?;
+        let chunks = clif::compile(program, &host()?)?;
         Self::install(program, chunks).map_err(CompileError::Memory)
     }
 
@@ -72,39 +73,6 @@ impl Jit {
     pub fn chunks(&self) -> &[Chunk] {
         &self.chunks
     }
-}
-
-/// The code of every chunk, in order, or the error of the first that has one.
-fn compile_chunks(program: &Program, isa: &OwnedTargetIsa) -> Result<Vec<Chunk>, CompileError> {
-    let chunks = program.chunks();
-    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(chunks.len());
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut compiler = Compiler::new(program, &**isa);
-        let mut done = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(sections) = chunks.get(index) else { return done };
-            done.push((index, compiler.chunk(sections.clone())));
-        }
-    };
-    let mut done: Vec<(usize, Result<Chunk, CompileError>)> = if workers <= 1 {
-        work()
-    } else {
-        std::thread::scope(|scope| {
-            let others: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
-            let mut done = work();
-            for other in others {
-                match other.join() {
-                    Ok(more) => done.extend(more),
-                    Err(panic) => std::panic::resume_unwind(panic),
-                }
-            }
-            done
-        })
-    };
-    done.sort_unstable_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, chunk)| chunk).collect()
 }
 
 impl Scan for Jit {
