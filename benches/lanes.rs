@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use rung::batch::{Batch, LANES, Variable};
+use rung::batch::{Batch, Variable};
 use rung::engine::jit::Jit;
 use rung::logic::{Area, Program};
 use rung::opt;
@@ -69,8 +69,8 @@ struct Many {
 }
 
 impl Many {
-    fn new(program: &Program, parts: usize) -> Self {
-        let batch = Batch::new(program, parts * LANES).expect("a small image");
+    fn new(program: &Program, lanes: usize) -> Self {
+        let batch = Batch::new(program, lanes).expect("a small image");
         let is_input = |slot: &usize| program.layout.slots()[*slot].area == Area::Input;
         let names = program.layout.observed().iter().filter(|observed| is_input(&observed.slot.index()));
         let inputs = names.map(|observed| batch.variable(&observed.name).expect("a variable")).collect();
@@ -80,15 +80,15 @@ impl Many {
     fn run(&mut self, scans: u64) -> Duration {
         let mut spent = Duration::ZERO;
         for _ in 0..scans {
-            for index in 0..self.batch.parts() {
-                let mut part = self.batch.part(index);
+            for word in 0..self.batch.words() {
                 for input in &self.inputs {
                     // A tenth of the lanes: 13 of 128.
                     let flips = (0..7).fold(0u128, |less, bit| {
                         let random: u128 = self.rng.random();
                         if 13 >> bit & 1 != 0 { less | !random } else { less & !random }
                     });
-                    part.set_word(*input, part.word(*input) ^ flips).expect("a BOOL");
+                    let old = self.batch.word(word, *input).expect("a word");
+                    self.batch.set_word(word, *input, old ^ flips).expect("a BOOL");
                 }
             }
             let begin = Instant::now();
@@ -116,25 +116,26 @@ fn ratios() {
     for rungs in [18, 1451, 20_000_u32] {
         let program = opt::optimise(workload(rungs));
         let scans = if rungs > 10_000 { SCANS / 10 } else { SCANS };
-        for parts in [1, 8] {
-            let (mut one, mut many) = (One::new(&program), Many::new(&program, parts));
-            let (mut scalar, mut lanes) = (Vec::new(), Vec::new());
+        for lanes in [128, 512, 2048] {
+            let (mut one, mut many) = (One::new(&program), Many::new(&program, lanes));
+            let (mut scalar, mut measured) = (Vec::new(), Vec::new());
+            let turn = (scans * 128).div_ceil(lanes as u64).max(16);
             // Until presets are past, so that timers do all that they do.
             many.run(if rungs > 10_000 { 60 } else { 250 });
             one.run(250);
             for _ in 0..TURNS {
                 scalar.push(one.run(scans).as_nanos() as f64 / scans as f64);
-                let spent = many.run(scans.div_ceil(parts as u64)).as_nanos() as f64;
-                lanes.push(spent / scans.div_ceil(parts as u64) as f64 / many.lanes() as f64);
+                let spent = many.run(turn).as_nanos() as f64;
+                measured.push(spent / turn as f64 / many.lanes() as f64);
             }
             let least = |measured: &[f64]| measured.iter().copied().fold(f64::INFINITY, f64::min);
-            let minima = least(&scalar) / least(&lanes);
-            let (scalar, lanes) = (median(scalar), median(lanes));
+            let minima = least(&scalar) / least(&measured);
+            let (scalar, each) = (median(scalar), median(measured));
             eprintln!(
-                "{rungs:>5}  {:>6}  {scalar:>9.1}  {:>5}  {lanes:>20.2}  {:>5.1}  {minima:>15.1}",
+                "{rungs:>5}  {:>6}  {scalar:>9.1}  {:>5}  {each:>20.2}  {:>5.1}  {minima:>15.1}",
                 rungs / 6,
                 many.lanes(),
-                scalar / lanes
+                scalar / each
             );
         }
     }
@@ -146,11 +147,11 @@ fn scans(criterion: &mut Criterion) {
     group.sample_size(10);
     for rungs in [18, 1451, 20_000_u32] {
         let program = opt::optimise(workload(rungs));
-        let (mut one, mut many) = (One::new(&program), Many::new(&program, 1));
+        let (mut one, mut many) = (One::new(&program), Many::new(&program, 512));
         group.throughput(Throughput::Elements(1));
         group.bench_function(format!("scalar/{rungs}"), |bencher| bencher.iter_custom(|scans| one.run(scans)));
         group.throughput(Throughput::Elements(many.lanes()));
-        group.bench_function(format!("128 lanes/{rungs}"), |bencher| bencher.iter_custom(|scans| many.run(scans)));
+        group.bench_function(format!("512 lanes/{rungs}"), |bencher| bencher.iter_custom(|scans| many.run(scans)));
     }
     group.finish();
 }

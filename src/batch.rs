@@ -1,6 +1,6 @@
 //! Batches: many independent plants of one program, scanned together.
 //!
-//! A plant is a process image of its own; all have one `now`. They run in **parts** of up to 128, a bit each
+//! A plant is a process image of its own; all have one `now`. They run in **parts** of up to 512, a bit each
 //! ([`engine::lanes`](crate::engine::lanes)), and the parts on all cores. Every plant computes exactly what it would
 //! alone: where the lanes cannot do something for all of them at once (a time that goes back, a timer's start that is
 //! set from outside), that part goes on with an interpreter for each plant, slower and as exact. Nothing here may do I/O
@@ -37,17 +37,22 @@ pub use random::RandomInputs;
 
 use crate::elementary::{Elementary, Value};
 use crate::engine::interp::Interpreter;
-pub use crate::engine::lanes::LANES;
-use crate::engine::lanes::Lanes;
+use crate::engine::lanes::{LANES, Lanes, VECTOR_LANES};
 use crate::logic::{Program, SlotId};
 use crate::parallel;
 use part::State;
+
+/// Lanes of a word: those whose BOOLs are read and set at once.
+pub const WORD_LANES: usize = VECTOR_LANES;
 
 /// Bytes that all images together may have.
 const MOST_BYTES: u64 = 1 << 36;
 
 /// Instructions that a core should have to do for it to be worth waking it for one scan.
 const WORTH_A_THREAD: usize = 1_000_000;
+
+/// Words of a part.
+const PART_WORDS: usize = LANES / WORD_LANES;
 
 /// Many plants of one program.
 #[derive(Debug)]
@@ -111,8 +116,9 @@ impl Batch {
             interpreter: Interpreter::new(program),
             names,
         };
-        let parts = (0..lanes.div_ceil(LANES)).map(|_| State::new(&shared)).collect();
-        Ok(Self { shared, parts, lanes })
+        let mut batch = Self { shared, parts: Vec::new(), lanes };
+        batch.reset();
+        Ok(batch)
     }
 
     /// How many plants there are. A plant, or lane, is named by its number, from 0.
@@ -120,7 +126,12 @@ impl Batch {
         self.lanes
     }
 
-    /// How many parts they run in: part k holds the lanes from 128 x k on.
+    /// How many words hold a BOOL of all lanes: word k holds lanes 128 x k and on.
+    pub fn words(&self) -> usize {
+        self.lanes.div_ceil(WORD_LANES)
+    }
+
+    /// How many parts they run in.
     pub fn parts(&self) -> usize {
         self.parts.len()
     }
@@ -161,23 +172,23 @@ impl Batch {
         (0..self.parts.len()).try_for_each(|part| self.part(part).set_all(variable, value))
     }
 
-    /// A BOOL variable in all lanes of a part, the first lane as the lowest bit; of another type, whether it is other
-    /// than 0. Bits beyond the last lane are 0.
+    /// A BOOL variable in the lanes of a word, the first lane as the lowest bit; of another type, whether it is other than
+    /// 0. Bits beyond the last lane are 0.
     ///
     /// # Errors
-    /// [`BatchError::NoSuchLane`] when there is no such part.
-    pub fn word(&mut self, part: usize, variable: Variable) -> Result<u128, BatchError> {
-        self.checked(part.saturating_mul(LANES))?;
-        Ok(self.part(part).word(variable))
+    /// [`BatchError::NoSuchLane`] when there is no such word.
+    pub fn word(&mut self, word: usize, variable: Variable) -> Result<u128, BatchError> {
+        self.checked(word.saturating_mul(WORD_LANES))?;
+        self.part(word / PART_WORDS).word(word % PART_WORDS, variable)
     }
 
-    /// Sets a BOOL variable in all lanes of a part, the first lane by the lowest bit. Bits beyond the last lane do not count.
+    /// Sets a BOOL variable in the lanes of a word, the first lane by the lowest bit. Bits beyond the last lane do not count.
     ///
     /// # Errors
-    /// [`BatchError::NoSuchLane`] when there is no such part, [`BatchError::WrongType`] when it is no BOOL.
-    pub fn set_word(&mut self, part: usize, variable: Variable, bits: u128) -> Result<(), BatchError> {
-        self.checked(part.saturating_mul(LANES))?;
-        self.part(part).set_word(variable, bits)
+    /// [`BatchError::NoSuchLane`] when there is no such word, [`BatchError::WrongType`] when it is no BOOL.
+    pub fn set_word(&mut self, word: usize, variable: Variable, bits: u128) -> Result<(), BatchError> {
+        self.checked(word.saturating_mul(WORD_LANES))?;
+        self.part(word / PART_WORDS).set_word(word % PART_WORDS, variable, bits)
     }
 
     /// Runs one scan in every lane, at a time in nanoseconds; on all cores where it is long enough to be worth it.
@@ -244,8 +255,8 @@ impl Batch {
 
     /// Starts all over: every variable of every lane holds its initial value, and no scan has been.
     pub fn reset(&mut self) {
-        let Self { shared, parts, .. } = self;
-        parts.iter_mut().for_each(|part| *part = State::new(shared));
+        let of_part = |part: usize| (self.lanes - part * LANES).min(LANES);
+        self.parts = (0..self.lanes.div_ceil(LANES)).map(|part| State::new(&self.shared, of_part(part))).collect();
     }
 
     /// One part.

@@ -1,8 +1,8 @@
-//! Up to 128 plants of a batch, which one core runs.
+//! Up to 512 plants of a batch, which one core runs.
 
 use rung_runtime::Scan;
 
-use super::{BatchError, LANES, Shared, Variable};
+use super::{BatchError, LANES, Shared, Variable, WORD_LANES};
 use crate::elementary::{Elementary, Value};
 use crate::engine::interp::Interpreter;
 use crate::engine::lanes::Group;
@@ -12,16 +12,17 @@ use crate::logic::SlotId;
 #[derive(Debug)]
 pub(super) enum State {
     /// A bit each.
-    Lanes(Box<Group>),
+    Lanes { group: Box<Group>, lanes: usize },
     /// Each on its own.
     Scalar { interpreter: Box<Interpreter>, images: Vec<Vec<u8>> },
 }
 
 impl State {
-    pub(super) fn new(shared: &Shared) -> Self {
+    /// So many plants before their first scan.
+    pub(super) fn new(shared: &Shared, lanes: usize) -> Self {
         match &shared.lanes {
-            Some(lanes) => Self::Lanes(Box::new(lanes.group())),
-            None => Self::scalar(shared, vec![shared.program.layout.initial_image(); LANES]),
+            Some(compiled) => Self::Lanes { group: Box::new(compiled.group(lanes)), lanes },
+            None => Self::scalar(shared, vec![shared.program.layout.initial_image(); lanes]),
         }
     }
 
@@ -31,26 +32,26 @@ impl State {
 
     /// Goes on with each plant on its own.
     fn separate(&mut self, shared: &Shared) -> (&mut Interpreter, &mut [Vec<u8>]) {
-        if let Self::Lanes(_) = self {
-            let images = (0..LANES).map(|lane| self.image(shared, lane)).collect();
+        if let Self::Lanes { lanes, .. } = *self {
+            let images = (0..lanes).map(|lane| self.image(shared, lane)).collect();
             *self = Self::scalar(shared, images);
         }
         match self {
             Self::Scalar { interpreter, images } => (interpreter, images),
-            Self::Lanes(_) => unreachable!("they were separated"),
+            Self::Lanes { .. } => unreachable!("they were separated"),
         }
     }
 
     pub(super) fn get(&self, shared: &Shared, lane: usize, slot: SlotId) -> Value {
         match (self, &shared.lanes) {
-            (Self::Lanes(group), Some(lanes)) => lanes.get(group, lane, slot),
+            (Self::Lanes { group, .. }, Some(lanes)) => lanes.get(group, lane, slot),
             (Self::Scalar { images, .. }, _) => shared.program.layout.slot(slot).read(&images[lane]),
-            (Self::Lanes(_), None) => unreachable!("a group is of compiled lanes"),
+            (Self::Lanes { .. }, None) => unreachable!("a group is of compiled lanes"),
         }
     }
 
     pub(super) fn set(&mut self, shared: &Shared, lane: usize, slot: SlotId, value: Value) {
-        if let (Self::Lanes(group), Some(lanes)) = (&mut *self, &shared.lanes)
+        if let (Self::Lanes { group, .. }, Some(lanes)) = (&mut *self, &shared.lanes)
             && lanes.set(group, lane, slot, value).is_ok()
         {
             return;
@@ -62,7 +63,7 @@ impl State {
     pub(super) fn image(&self, shared: &Shared, lane: usize) -> Vec<u8> {
         match self {
             Self::Scalar { images, .. } => images[lane].clone(),
-            Self::Lanes(_) => {
+            Self::Lanes { .. } => {
                 let layout = &shared.program.layout;
                 let mut image = vec![0; layout.size() as usize];
                 for (id, slot) in (0..).map(SlotId).zip(layout.slots()) {
@@ -74,7 +75,7 @@ impl State {
     }
 
     fn scan(&mut self, shared: &Shared, now: i64) {
-        if let (Self::Lanes(group), Some(lanes)) = (&mut *self, &shared.lanes)
+        if let (Self::Lanes { group, .. }, Some(lanes)) = (&mut *self, &shared.lanes)
             && lanes.scan(group, now).is_ok()
         {
             return;
@@ -108,19 +109,25 @@ impl<'b> Part<'b> {
         self.index * LANES
     }
 
-    /// How many lanes it has, 1 to 128.
+    /// How many lanes it has, 1 to 512.
     pub fn lanes(&self) -> usize {
         self.lanes
     }
 
-    /// A bit for each of its lanes.
-    pub fn all(&self) -> u128 {
-        u128::MAX >> (LANES - self.lanes)
+    /// How many words hold a BOOL of its lanes: word k holds the 128 lanes from 128 x k on.
+    pub fn words(&self) -> usize {
+        self.lanes.div_ceil(WORD_LANES)
+    }
+
+    /// A bit for each lane that a word has; none for a word that there is not.
+    pub fn all(&self, word: usize) -> u128 {
+        let lanes = self.lanes.saturating_sub(word.saturating_mul(WORD_LANES)).min(WORD_LANES);
+        if lanes == 0 { 0 } else { u128::MAX >> (WORD_LANES - lanes) }
     }
 
     /// Whether its plants run a bit each still, and not each on its own.
     pub fn is_joined(&self) -> bool {
-        matches!(self.state, State::Lanes(_))
+        matches!(self.state, State::Lanes { .. })
     }
 
     /// The value of a variable in a lane.
@@ -149,40 +156,48 @@ impl<'b> Part<'b> {
     /// [`BatchError::WrongType`]
     pub fn set_all(&mut self, variable: Variable, value: Value) -> Result<(), BatchError> {
         if value.ty() == Elementary::Bool {
-            return self.set_word(variable, if value.is_true() { u128::MAX } else { 0 });
+            let bits = if value.is_true() { u128::MAX } else { 0 };
+            return (0..self.words()).try_for_each(|word| self.set_word(word, variable, bits));
         }
         (0..self.lanes).try_for_each(|lane| self.set(lane, variable, value))
     }
 
-    /// A BOOL variable in all its lanes, the first as the lowest bit; of another type, whether it is other than 0.
-    pub fn word(&self, variable: Variable) -> u128 {
-        let word = match (&*self.state, &self.shared.lanes) {
-            (State::Lanes(group), Some(lanes)) => lanes.word(group, variable.slot),
-            (State::Scalar { .. } | State::Lanes(_), _) => {
-                let holds =
-                    |lane| u128::from(self.state.get(self.shared, lane, variable.slot).is_true()) << lane;
-                (0..self.lanes).map(holds).sum()
-            }
-        };
-        word & self.all()
-    }
-
-    /// Sets a BOOL variable in all its lanes, the first by the lowest bit.
+    /// A BOOL variable in the lanes of a word, the first as the lowest bit; of another type, whether it is other than 0.
     ///
     /// # Errors
-    /// [`BatchError::WrongType`] when the variable is no BOOL.
-    pub fn set_word(&mut self, variable: Variable, bits: u128) -> Result<(), BatchError> {
+    /// [`BatchError::NoSuchLane`] when there is no such word.
+    pub fn word(&self, word: usize, variable: Variable) -> Result<u128, BatchError> {
+        self.checked(word.saturating_mul(WORD_LANES))?;
+        let all = self.all(word);
+        Ok(match (&*self.state, &self.shared.lanes) {
+            (State::Lanes { group, .. }, Some(lanes)) => all & lanes.word(group, variable.slot, word),
+            (State::Scalar { .. } | State::Lanes { .. }, _) => {
+                let value = |lane| self.state.get(self.shared, word * WORD_LANES + lane, variable.slot);
+                let lanes = all.count_ones() as usize;
+                (0..lanes).map(|lane| u128::from(value(lane).is_true()) << lane).sum()
+            }
+        })
+    }
+
+    /// Sets a BOOL variable in the lanes of a word, the first by the lowest bit.
+    ///
+    /// # Errors
+    /// [`BatchError::NoSuchLane`] when there is no such word, [`BatchError::WrongType`] when the variable is no BOOL.
+    pub fn set_word(&mut self, word: usize, variable: Variable, bits: u128) -> Result<(), BatchError> {
+        self.checked(word.saturating_mul(WORD_LANES))?;
         fits(variable, Elementary::Bool)?;
-        self.set_bits(variable.slot, bits);
+        self.set_bits(word, variable.slot, bits);
         Ok(())
     }
 
-    /// Sets a slot that is a BOOL in all its lanes.
-    pub(crate) fn set_bits(&mut self, slot: SlotId, bits: u128) {
+    /// Sets a slot that is a BOOL in the lanes of a word that there is.
+    pub(crate) fn set_bits(&mut self, word: usize, slot: SlotId, bits: u128) {
         match (&mut *self.state, &self.shared.lanes) {
-            (State::Lanes(group), Some(lanes)) => lanes.set_word(group, slot, bits),
-            (State::Scalar { .. } | State::Lanes(_), _) => {
-                (0..self.lanes).for_each(|lane| self.put(lane, slot, Value::bool(bits >> lane & 1 != 0)));
+            (State::Lanes { group, .. }, Some(lanes)) => lanes.set_word(group, slot, word, bits),
+            (State::Scalar { .. } | State::Lanes { .. }, _) => {
+                for lane in 0..WORD_LANES {
+                    self.put(word * WORD_LANES + lane, slot, Value::bool(bits >> lane & 1 != 0));
+                }
             }
         }
     }

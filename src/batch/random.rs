@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 use rand::Rng;
 use rand_pcg::Pcg64;
 
-use super::{LANES, Part};
+use super::{Part, WORD_LANES};
 use crate::elementary::{Elementary, Value};
 use crate::logic::{Area, Layout, SlotId};
 use crate::simulate::{Setting, Stimuli};
@@ -18,10 +18,10 @@ use crate::simulate::{Setting, Stimuli};
 /// Changes of inputs: a scan has one in so many, as a power of two.
 const PACES: [u32; 4] = [1, 3, 5, 7];
 
-/// The stream of random numbers from which the paces come. The streams of the parts count from 0.
+/// The stream of random numbers from which the paces come. The streams of the words count from 0.
 const PACE_STREAM: u128 = u128::MAX;
 
-/// The inputs of up to 128 plants, scan by scan.
+/// The inputs of the plants of a word, scan by scan.
 #[derive(Clone, Debug)]
 pub struct RandomInputs {
     inputs: Vec<Input>,
@@ -38,8 +38,8 @@ struct Input {
 }
 
 impl RandomInputs {
-    /// The inputs of a part of a batch, before the first scan: all variables that are inputs, but for some.
-    pub fn new(layout: &Layout, seed: u64, part: usize, except: &HashSet<SlotId>) -> Self {
+    /// The inputs of a word of a batch, before the first scan: all variables that are inputs, but for some.
+    pub fn new(layout: &Layout, seed: u64, word: usize, except: &HashSet<SlotId>) -> Self {
         let mut paces = Pcg64::new(u128::from(seed), PACE_STREAM);
         let mut seen = HashSet::new();
         let observed = layout.observed().iter().map(|observed| observed.slot);
@@ -52,7 +52,7 @@ impl RandomInputs {
         };
         let inputs: Vec<Input> = slots.map(input).collect();
         let inputs = inputs.into_iter().filter(|input| !except.contains(&input.slot)).collect();
-        Self { inputs, generator: Pcg64::new(u128::from(seed), part as u128) }
+        Self { inputs, generator: Pcg64::new(u128::from(seed), word as u128) }
     }
 
     /// Whether there is none.
@@ -60,11 +60,11 @@ impl RandomInputs {
         self.inputs.is_empty()
     }
 
-    /// Changes the inputs of a part for its next scan.
-    pub fn apply(&mut self, part: &mut Part<'_>) {
+    /// Changes the inputs for the next scan, in a word of a part that there is.
+    pub fn apply(&mut self, part: &mut Part<'_>, word: usize) {
         self.next(|change| match change {
-            Change::Bits(slot, bits) => part.set_bits(slot, bits),
-            Change::Value(lane, setting) => part.put(lane, setting.slot, setting.value),
+            Change::Bits(slot, bits) => part.set_bits(word, slot, bits),
+            Change::Value(lane, setting) => part.put(word * WORD_LANES + lane, setting.slot, setting.value),
         });
     }
 
@@ -77,13 +77,13 @@ impl RandomInputs {
             let now = i64::try_from(scan).unwrap_or(i64::MAX).saturating_mul(cycle);
             self.next(|change| match change {
                 Change::Bits(slot, bits) => {
-                    let bit = bits >> (lane % LANES) & 1 != 0;
+                    let bit = bits >> (lane % WORD_LANES) & 1 != 0;
                     let changes = last.insert(slot, bit) != Some(bit);
                     if changes {
                         settings.push((now, Setting { slot, value: Value::bool(bit) }));
                     }
                 }
-                Change::Value(of, setting) if of == lane % LANES => settings.push((now, setting)),
+                Change::Value(of, setting) if of == lane % WORD_LANES => settings.push((now, setting)),
                 Change::Value(..) => {}
             });
         }

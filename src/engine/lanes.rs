@@ -1,7 +1,7 @@
-//! Lanes: 128 plants of one program in one pass, a bit each.
+//! Lanes: many plants of one program in one pass, a bit each.
 //!
-//! A BOOL is a word of 128 bits, so that one vector instruction does an operation for all lanes. Everything else is,
-//! in general, a column of 128 values ([`columns`]). What timers keep needs neither: it is recognised by the flow of
+//! A BOOL is a word of four times 128 bits, and one vector instruction does an operation for 128 lanes. Everything else is,
+//! in general, a column of as many values ([`columns`]). What timers keep needs neither: it is recognised by the flow of
 //! values, and only *when* it was set is kept ([`recognise`] has the proof, [`track`] and [`history`] the means).
 //! Every lane computes exactly what a scalar engine does: `now` is one for all lanes, nothing is quantised, and what
 //! cannot be told in this way is refused ([`Refused`]), never computed otherwise.
@@ -20,7 +20,7 @@ mod word;
 mod tests;
 
 pub(in crate::engine) use compile::Code;
-pub(in crate::engine) use word::Word;
+pub(in crate::engine) use word::{VECTORS, Word};
 
 use super::clif::CompileError;
 use super::jit::host_isa;
@@ -32,11 +32,14 @@ use history::History;
 use plan::{Home, Piece, Plan};
 use track::Tracks;
 
-/// Lanes that a pass runs.
-pub const LANES: usize = 128;
+/// Lanes of a group.
+pub const LANES: usize = VECTORS * VECTOR_LANES;
+
+/// Lanes of a word of a group: those whose BOOLs are read and set at once.
+pub const VECTOR_LANES: usize = word::VECTOR_LANES;
 
 /// The most words that code can reach.
-const MOST_WORDS: usize = 1 << 26;
+const MOST_WORDS: usize = 1 << 24;
 
 /// What the lanes of a group cannot do, since it would not be the same for all of them, or not in order: a scalar engine
 /// can, for each lane on its own.
@@ -49,6 +52,8 @@ pub struct Lanes {
     layout: Layout,
     plan: Plan,
     segments: Segments,
+    /// The first segment that sums up a class.
+    sums: usize,
     /// By task: when it is due, over an image of nothing but that, and where there.
     turns: Vec<Turn>,
     dues: Layout,
@@ -56,9 +61,11 @@ pub struct Lanes {
     all_run: bool,
 }
 
-/// 128 plants: all that they hold.
+/// Up to [`LANES`] plants: all that they hold.
 #[derive(Clone, Debug)]
 pub struct Group {
+    /// How many vectors of a word have lanes that count.
+    vectors: usize,
     words: Vec<Word>,
     columns: Columns,
     tracks: Tracks,
@@ -89,24 +96,21 @@ impl Lanes {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;
-        let pieces = plan.tasks.iter().flatten();
-        let segments: Vec<&[plan::BitOp]> = pieces
-            .filter_map(|piece| match piece {
-                Piece::Segment(ops) => Some(ops.as_slice()),
-                Piece::Steps(_) => None,
-            })
-            .collect();
-        let code = compile::segments(&segments, &*isa)?;
-        let segments = Segments::install(&code, plan.words, plan.row_words).map_err(CompileError::Memory)?;
+        let code = compile::compile(&plan, &*isa)?;
+        let segments = Segments::install(&code).map_err(CompileError::Memory)?;
+        // Those of the classes are behind those of the pieces.
+        let sums = code.len() - plan.classes.len();
         let (turns, dues) = turns(program);
         let all_run = program.tasks.iter().all(|task| task.interval.is_none());
-        Ok(Self { layout: program.layout.clone(), plan, segments, turns, dues, all_run })
+        Ok(Self { layout: program.layout.clone(), plan, segments, sums, turns, dues, all_run })
     }
 
-    /// 128 plants before the first scan: every slot at its initial value.
-    pub fn group(&self) -> Group {
+    /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond them
+    /// are there, but may not be scanned.
+    pub fn group(&self, lanes: usize) -> Group {
         let presets = self.plan.presets.iter().map(|preset| preset.nanoseconds);
         let mut group = Group {
+            vectors: lanes.div_ceil(VECTOR_LANES).clamp(1, VECTORS),
             words: vec![Word::ZEROS; self.plan.words],
             columns: Columns::new(self.plan.columns),
             tracks: Tracks::new(&self.plan),
@@ -135,12 +139,16 @@ impl Lanes {
     /// # Panics
     /// When the group is another program's.
     pub fn scan(&self, group: &mut Group, now: i64) -> Result<(), Refused> {
-        let Group { words, columns, tracks, history, dues } = group;
+        let Group { vectors, words, columns, tracks, history, dues } = group;
         if !history.accepts(now) {
             return Err(Refused);
         }
         let scan = history.begin(now);
-        tracks.begin(&self.plan, history, words, self.all_run);
+        let sum_up = |class: usize, to: &mut [Word], rows: &mut [Word]| {
+            let count = self.plan.classes[class].tracks.len();
+            self.segments.run(self.sums + class, to, rows, [count, VECTORS]);
+        };
+        tracks.begin(&self.plan, history, words, self.all_run, sum_up);
         let row = tracks.row(scan);
         let mut segment = 0;
         for (turn, pieces) in self.turns.iter().zip(&self.plan.tasks) {
@@ -149,7 +157,7 @@ impl Lanes {
                 match piece {
                     Piece::Segment(_) => {
                         if runs {
-                            self.segments.run(segment, words, row);
+                            self.segments.run(segment, words, row, [1, *vectors]);
                         }
                         segment += 1;
                     }
@@ -198,27 +206,28 @@ impl Lanes {
         Ok(())
     }
 
-    /// A BOOL slot in all lanes, lane 0 the lowest bit; of another slot, whether it is other than 0.
+    /// A BOOL slot in 128 lanes, of which the first is the lowest bit; of another slot, whether it is other than 0.
     ///
     /// # Panics
-    /// When there is no such slot, or the group is another program's.
-    pub fn word(&self, group: &Group, slot: SlotId) -> u128 {
+    /// When there is no such slot or vector of lanes, or the group is another program's.
+    pub fn word(&self, group: &Group, slot: SlotId, vector: usize) -> u128 {
         match self.plan.homes[slot.index()] {
-            Home::Word(word) => group.words[word as usize].into(),
+            Home::Word(word) => group.words[word as usize].vector(vector),
             Home::Column(_) | Home::Tracked(_) | Home::Due(_) => {
-                let holds = |lane: usize| u128::from(self.get(group, lane, slot).is_true()) << lane;
-                (0..LANES).map(holds).sum()
+                let first = vector * VECTOR_LANES;
+                let holds = |lane: usize| u128::from(self.get(group, first + lane, slot).is_true()) << lane;
+                (0..VECTOR_LANES).map(holds).sum()
             }
         }
     }
 
-    /// Sets a BOOL slot in all lanes, lane 0 the lowest bit. A slot of another type stays as it is.
+    /// Sets a BOOL slot in 128 lanes, of which the first is the lowest bit. A slot of another type stays as it is.
     ///
     /// # Panics
-    /// When there is no such slot, or the group is another program's.
-    pub fn set_word(&self, group: &mut Group, slot: SlotId, bits: u128) {
+    /// As [`Lanes::word`].
+    pub fn set_word(&self, group: &mut Group, slot: SlotId, vector: usize, bits: u128) {
         if let Home::Word(word) = self.plan.homes[slot.index()] {
-            group.words[word as usize] = bits.into();
+            group.words[word as usize].set_vector(vector, bits);
         }
     }
 

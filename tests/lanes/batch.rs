@@ -1,6 +1,6 @@
 //! The library's batch: names, words, errors, and what it does where lanes cannot run as one.
 
-use rung::batch::{Batch, BatchError, LANES, RandomInputs};
+use rung::batch::{Batch, BatchError, RandomInputs, WORD_LANES};
 use rung::elementary::{Elementary, Value};
 use rung::simulate::{Schedule, Simulation, Stimuli};
 use rung::source::Source;
@@ -15,7 +15,7 @@ const CYCLE: i64 = 10_000_000;
 fn a_variable_is_set_and_read_by_lane_by_word_and_in_all() {
     let program = program(TEXT);
     let mut batch = Batch::new(&program, 200).expect("a small image");
-    assert_eq!((batch.lanes(), batch.parts()), (200, 2));
+    assert_eq!((batch.lanes(), batch.words(), batch.parts()), (200, 2, 1));
     let [a, b, level, q, n] = ["A", "b", "level", "t.q", "n"].map(|name| batch.variable(name).expect("a variable"));
     assert_eq!((level.ty(), q.ty()), (Elementary::Int, Elementary::Bool));
     batch.set_word(0, a, 0b101).expect("a BOOL");
@@ -27,7 +27,7 @@ fn a_variable_is_set_and_read_by_lane_by_word_and_in_all() {
         batch.scan(scan * CYCLE);
     }
     assert_eq!(batch.word(0, q), Ok(0b101));
-    assert_eq!(batch.word(1, q), Ok((1 << (200 - LANES)) - 1), "no bits beyond the last lane");
+    assert_eq!(batch.word(1, q), Ok((1 << (200 - WORD_LANES)) - 1), "no bits beyond the last lane");
     assert_eq!(batch.word(1, n), batch.word(1, q), "a number counts as whether it is other than 0");
     let number = |lane| batch.get(lane, n).map(Value::bits);
     assert_eq!((number(0), number(198), number(199)), (Ok(3), Ok(3), Ok(9)));
@@ -65,22 +65,22 @@ fn what_there_is_not_and_what_does_not_fit_is_refused() {
 #[test]
 fn times_that_go_back_and_images_from_outside_are_exact_too() {
     let program = program(TEXT);
-    let mut rig = Rig::new(&program, 140);
-    (0..140).for_each(|lane| rig.set(lane, "a", Value::bool(lane % 3 == 0)));
+    let mut rig = Rig::new(&program, 600);
+    (0..600).for_each(|lane| rig.set(lane, "a", Value::bool(lane % 3 == 0)));
     for now in [0, 1, 2, 3] {
         rig.scan(now * CYCLE);
     }
     assert!(rig.batch.each(|part| part.is_joined()).into_iter().all(|joined| joined));
     // The start of a timer that no scan has set.
     let start = program.layout.slots().iter().find(|slot| slot.name == "t#start").expect("a TON has a start");
-    start.write(&mut rig.images[139], Value::time(3 * CYCLE + 7));
-    let image = rig.images[139].clone();
-    rig.batch.set_image(139, &image).expect("an image of its size");
+    start.write(&mut rig.images[599], Value::time(3 * CYCLE + 7));
+    let image = rig.images[599].clone();
+    rig.batch.set_image(599, &image).expect("an image of its size");
     assert_eq!(rig.batch.each(|part| part.is_joined()), [true, false]);
-    assert_eq!(rig.difference(0..140), None);
+    assert_eq!(rig.difference(0..600), None);
     for now in [5, 4, 4, 9, -100, 12, i64::MIN, i64::MAX] {
         rig.scan(if (-200..200).contains(&now) { now * CYCLE } else { now });
-        assert_eq!(rig.difference(0..140), None, "at {now}");
+        assert_eq!(rig.difference(0..600), None, "at {now}");
     }
     assert_eq!(rig.batch.each(|part| part.is_joined()), [false, false]);
     rig.batch.reset();
@@ -131,17 +131,18 @@ fn tasks_with_intervals_run_in_all_lanes_or_in_none() {
 fn a_lane_of_a_seed_gets_the_same_alone_as_among_others() {
     let program = program(TEXT);
     let none = Default::default();
-    let mut batch = Batch::new(&program, 300).expect("a small image");
+    let mut batch = Batch::new(&program, 700).expect("a small image");
     let images = batch.each(|mut part| {
-        let mut random = RandomInputs::new(&program.layout, 42, part.index(), &none);
+        let words = part.first() / WORD_LANES..part.first() / WORD_LANES + part.words();
+        let mut random: Vec<_> = words.map(|word| RandomInputs::new(&program.layout, 42, word, &none)).collect();
         for scan in 0..120 {
-            random.apply(&mut part);
+            random.iter_mut().enumerate().for_each(|(word, random)| random.apply(&mut part, word));
             part.scan(scan * CYCLE);
         }
     });
-    assert_eq!(images.len(), 3);
-    for lane in [0, 77, 128, 299] {
-        let random = RandomInputs::new(&program.layout, 42, lane / LANES, &none);
+    assert_eq!(images.len(), 2);
+    for lane in [0, 77, 128, 511, 512, 699] {
+        let random = RandomInputs::new(&program.layout, 42, lane / WORD_LANES, &none);
         let stimuli = random.stimuli_of(lane, CYCLE, 120, &Stimuli::default());
         let text = stimuli.to_csv(&program.layout);
         let read = Stimuli::parse(&Source::new("lane.csv", text.as_str()), &program.layout);

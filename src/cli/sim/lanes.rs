@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::super::run::time;
 use super::super::{Failure, print, report, write_whole};
-use crate::batch::{Batch, LANES, Part, RandomInputs, Variable};
+use crate::batch::{Batch, Part, RandomInputs, Variable, WORD_LANES};
 use crate::diagnostic::Code;
 use crate::logic::{Layout, Program, SlotId};
 use crate::simulate::{Schedule, Stimuli};
@@ -56,7 +56,7 @@ impl Arguments {
 
 /// What one lane of a seed gets in its first scans.
 fn stimuli_of(layout: &Layout, seed: u64, lane: usize, cycle: i64, scans: u64, common: &Stimuli) -> Stimuli {
-    let inputs = RandomInputs::new(layout, seed, lane / LANES, &given(common));
+    let inputs = RandomInputs::new(layout, seed, lane / WORD_LANES, &given(common));
     inputs.stimuli_of(lane, cycle, scans, common)
 }
 
@@ -138,12 +138,14 @@ impl Run<'_> {
     fn part(&self, mut part: Part<'_>, given: &HashSet<SlotId>, shown: &[(Signal, SlotId)], bar: &ProgressBar) -> Done {
         let seed = self.arguments.seed.unwrap_or_default();
         let layout = &self.program.layout;
-        let mut random = RandomInputs::new(layout, seed, part.index(), given);
+        let words = part.first() / WORD_LANES..part.first() / WORD_LANES + part.words();
+        let mut random: Vec<RandomInputs> =
+            words.map(|word| RandomInputs::new(layout, seed, word, given)).collect();
         let variables: Vec<Variable> = shown.iter().map(|(_, slot)| part.variable(*slot)).collect();
         let asserted: Vec<Variable> = self.assertions.iter().map(|one| part.variable(one.holds)).collect();
         let mut summaries: Vec<Summary> = variables.iter().map(|one| Summary::new(one.ty())).collect();
         let mut rows = self.stimuli.rows().peekable();
-        let (mut first, mut failed) = (None, 0u128);
+        let (mut first, mut failed) = (None, vec![0u128; part.words()]);
         for scan in 0..self.schedule.count() {
             if scan % SCANS_PER_LOOK == 0 {
                 bar.inc(SCANS_PER_LOOK.min(self.schedule.count() - scan) * part.lanes() as u64);
@@ -158,21 +160,24 @@ impl Run<'_> {
                     (0..part.lanes()).for_each(|lane| part.put(lane, setting.slot, setting.value));
                 }
             }
-            random.apply(&mut part);
+            random.iter_mut().enumerate().for_each(|(word, random)| random.apply(&mut part, word));
             part.scan(now);
             for (summary, variable) in summaries.iter_mut().zip(&variables) {
                 summary.add(&part, *variable);
             }
             for (assertion, holds) in asserted.iter().enumerate() {
-                let fails = part.all() & !part.word(*holds);
-                if fails != 0 && first.is_none() {
-                    let lane = part.first() + fails.trailing_zeros() as usize;
-                    first = Some(Violation { scan, lane, assertion });
+                for (word, failed) in failed.iter_mut().enumerate() {
+                    let fails = part.all(word) & !part.word(word, *holds).unwrap_or(u128::MAX);
+                    *failed |= fails;
+                    if fails != 0 && first.is_none() {
+                        let lane = part.first() + word * WORD_LANES + fails.trailing_zeros() as usize;
+                        first = Some(Violation { scan, lane, assertion });
+                    }
                 }
-                failed |= fails;
             }
         }
-        Done { summaries, first, failed: failed.count_ones(), joined: part.is_joined() }
+        let failed = failed.iter().map(|failed| failed.count_ones()).sum();
+        Done { summaries, first, failed, joined: part.is_joined() }
     }
 
     /// Prints the table, and says which assertion failed.

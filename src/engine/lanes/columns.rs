@@ -59,7 +59,7 @@ pub(super) enum Step {
     CopyArray { to: Elements, from: Elements, condition: u32 },
 }
 
-/// All columns of 128 lanes, by the width of their values.
+/// All columns of a group, by the width of their values.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Columns {
     one: Vec<[u8; LANES]>,

@@ -1,26 +1,35 @@
-//! A segment to one Cranelift function on 128-bit vectors, one bit a lane.
+//! A segment to one Cranelift function on 128-bit vectors, one bit a lane; and the sums of an epoch to one for a class.
+//!
+//! A function is a loop over the vectors of a word: all of a segment for the first, then for the next.
 //!
 //! As in [`clif`](crate::engine::clif), a function takes its pointers as arguments and has no relocations, loads are
 //! made where their value is used, so that they become part of the instruction that uses it, and what is used more
 //! than once passes through a block of its own, so that loads below it still can.
 //!
 //! ```text
-//! extern "C" fn(words: *mut Word, row: *mut Word)
+//! extern "C" fn(words: *mut Word, row: *mut Word, vectors: i64)
 //! ```
+
+mod sums;
 
 use std::collections::HashMap;
 
 use cranelift_codegen::Context;
-use cranelift_codegen::ir::{AbiParam, Function, InstBuilder, MemFlagsData, Signature, Type, UserFuncName, Value, types};
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{
+    AbiParam, BlockArg, Function, InstBuilder, MemFlagsData, Signature, Type, UserFuncName, Value, types,
+};
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
-use super::plan::{Bit, BitOp, FALSE_WORD, TRUE_WORD};
+use super::plan::{Bit, BitOp, FALSE_WORD, Piece, Plan, TRUE_WORD};
+use super::track::ROWS;
+use super::word::Word;
 use crate::engine::clif::{self, CompileError};
 use crate::parallel;
 
-/// What holds a word.
-const WORD: Type = types::I8X16;
+/// What holds a vector of a word.
+const VECTOR: Type = types::I8X16;
 
 /// The code of a segment.
 #[derive(Debug)]
@@ -29,30 +38,51 @@ pub(in crate::engine) struct Code {
     pub(in crate::engine) bytes: Vec<u8>,
     /// What its first byte must be aligned to, a power of two.
     pub(in crate::engine) alignment: u32,
+    /// How many words it may reach from each of its pointers.
+    pub(in crate::engine) reach: [usize; 2],
 }
 
-/// Compiles segments on all cores; the code does not depend on how many there are.
+/// The code of a plan's segments, in order, and behind them that of the sums of each class, made on all cores; it does
+/// not depend on how many there are.
 ///
 /// # Errors
-/// That of the first segment that has one: when Cranelift refuses it.
-pub(super) fn segments(segments: &[&[BitOp]], isa: &dyn TargetIsa) -> Result<Vec<Code>, CompileError> {
+/// That of the first that has one: when Cranelift refuses it.
+pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa) -> Result<Vec<Code>, CompileError> {
+    let pieces = plan.tasks.iter().flatten();
+    let segments: Vec<&[BitOp]> = pieces
+        .filter_map(|piece| match piece {
+            Piece::Segment(ops) => Some(ops.as_slice()),
+            Piece::Steps(_) => None,
+        })
+        .collect();
     let start = || (Context::new(), FunctionBuilderContext::new());
-    let work = |(context, builder): &mut (Context, FunctionBuilderContext), index: usize| {
-        segment(index, segments[index], isa, context, builder)
+    let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| match segments.get(index) {
+        Some(ops) => {
+            let reach = [plan.words, plan.row_words];
+            function(index, isa, memory, reach, |builder, pointers| segment(ops, builder, pointers))
+        }
+        None => {
+            let class = &plan.classes[index - segments.len()];
+            let (length, last_row) = (class.tracks.len(), plan.row_words * (ROWS - 1));
+            let reach = [(class.sums() - 1) * length + 1, last_row + class.row + (class.bits - 1) * length + 1];
+            function(index, isa, memory, reach, |builder, pointers| sums::sums(plan, class, builder, pointers))
+        }
     };
-    parallel::each(segments.len(), start, work).into_iter().collect()
+    parallel::each(segments.len() + plan.classes.len(), start, work).into_iter().collect()
 }
 
-fn segment(
+/// Makes a function of two pointers and of how many vectors they are to be moved on by: a loop over its body.
+fn function(
     index: usize,
-    ops: &[BitOp],
     isa: &dyn TargetIsa,
-    context: &mut Context,
-    builder_context: &mut FunctionBuilderContext,
+    (context, builder_context): &mut (Context, FunctionBuilderContext),
+    reach: [usize; 2],
+    body: impl FnOnce(FunctionBuilder<'_>, [Value; 2]) -> FunctionBuilder<'_>,
 ) -> Result<Code, CompileError> {
     context.clear();
     let mut signature = Signature::new(CallConv::triple_default(isa.triple()));
     signature.params.extend([AbiParam::new(isa.pointer_type()); 2]);
+    signature.params.push(AbiParam::new(types::I64));
     let name = UserFuncName::user(0, u32::try_from(index).unwrap_or(u32::MAX));
     context.func = Function::with_name_signature(name, signature);
     let mut builder = FunctionBuilder::new(&mut context.func, builder_context);
@@ -60,7 +90,34 @@ fn segment(
     builder.append_block_params_for_function_params(block);
     builder.switch_to_block(block);
     builder.seal_block(block);
-    let [words, row] = [0, 1].map(|param| builder.block_params(block)[param]);
+    let turn = builder.create_block();
+    let arguments: Vec<BlockArg> = builder.block_params(block).iter().map(|param| BlockArg::from(*param)).collect();
+    builder.ins().jump(turn, &arguments);
+    let [words, row, left] =
+        [isa.pointer_type(), isa.pointer_type(), types::I64].map(|ty| builder.append_block_param(turn, ty));
+    builder.switch_to_block(turn);
+    let mut builder = body(builder, [words, row]);
+    let [words, row] = [words, row].map(|pointer| builder.ins().iadd_imm_s(pointer, i64::from(VECTOR.bytes())));
+    let left = builder.ins().iadd_imm_s(left, -1);
+    let done = builder.create_block();
+    let more = builder.ins().icmp_imm_s(IntCC::NotEqual, left, 0);
+    builder.ins().brif(more, turn, &[words.into(), row.into(), left.into()], done, &[]);
+    builder.seal_block(turn);
+    builder.switch_to_block(done);
+    builder.seal_block(done);
+    builder.ins().return_(&[]);
+    builder.finalize(isa.frontend_config());
+    let refused = |reason: String| CompileError::Chunk { sections: index..index + 1, reason };
+    let compiled = clif::generate(context, isa).map_err(|error| refused(error.to_string()))?;
+    if !compiled.buffer.relocs().is_empty() {
+        return Err(refused("the code refers to something outside of itself".to_owned()));
+    }
+    let alignment = isa.function_alignment().minimum.max(compiled.buffer.alignment);
+    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment, reach })
+}
+
+/// Fills a function with a segment.
+fn segment<'f>(ops: &[BitOp], builder: FunctionBuilder<'f>, [words, row]: [Value; 2]) -> FunctionBuilder<'f> {
     let mut uses = vec![0; ops.len()];
     ops.iter().flat_map(operands).for_each(|operand| uses[operand as usize] += 1);
     let held = vec![None; ops.len()];
@@ -68,15 +125,7 @@ fn segment(
     for index in 0..ops.len() {
         lowering.op(index);
     }
-    lowering.builder.ins().return_(&[]);
-    lowering.builder.finalize(isa.frontend_config());
-    let refused = |reason: String| CompileError::Chunk { sections: index..index + 1, reason };
-    let compiled = clif::generate(context, isa).map_err(|error| refused(error.to_string()))?;
-    if !compiled.buffer.relocs().is_empty() {
-        return Err(refused("the code refers to something outside of itself".to_owned()));
-    }
-    let alignment = isa.function_alignment().minimum.max(compiled.buffer.alignment);
-    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment })
+    lowering.builder
 }
 
 /// The operands of an operation.
@@ -138,7 +187,7 @@ impl Lowering<'_, '_> {
     /// See [`clif`](crate::engine::clif): the jump to the block that follows makes no code.
     fn settled(&mut self, value: Value) -> Value {
         let block = self.builder.create_block();
-        let settled = self.builder.append_block_param(block, WORD);
+        let settled = self.builder.append_block_param(block, VECTOR);
         self.builder.ins().jump(block, &[value.into()]);
         self.builder.switch_to_block(block);
         self.builder.seal_block(block);
@@ -146,7 +195,7 @@ impl Lowering<'_, '_> {
     }
 
     fn load(&mut self, word: u32) -> Value {
-        self.builder.ins().load(WORD, MemFlagsData::trusted(), self.words, way(word))
+        self.builder.ins().load(VECTOR, MemFlagsData::trusted(), self.words, way(word))
     }
 
     fn bit(&mut self, bit: Bit) -> Value {
@@ -234,5 +283,5 @@ impl Lowering<'_, '_> {
 
 /// A word's way from the pointer, in bytes; [`Lanes`](super::Lanes) refuses programs with more words than have one.
 fn way(word: u32) -> i32 {
-    i32::try_from(u64::from(word) * u64::from(WORD.bytes())).unwrap_or(i32::MAX)
+    i32::try_from(u64::from(word) * size_of::<Word>() as u64).unwrap_or(i32::MAX)
 }

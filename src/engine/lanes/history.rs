@@ -26,6 +26,8 @@ struct Reach {
     /// The time of scan `end`, and the run that it is in, once it was looked up.
     start: Option<i64>,
     run: usize,
+    /// Whether it goes on by one scan with each that comes after an equal step. Else it has not begun to.
+    goes_on: bool,
 }
 
 /// See the module.
@@ -36,13 +38,18 @@ pub(super) struct History {
     last: u64,
     now: i64,
     reaches: Vec<Reach>,
+    /// How many scans the presets that go on have gone on since `end` was noted, all by one a scan.
+    ahead: u64,
+    /// While steps stay equal and no time comes that is as late as this, each preset goes on by one scan, or stays.
+    steady_before: Option<i64>,
 }
 
 impl History {
     /// Before the first scan, for some presets in nanoseconds.
     pub(super) fn new(presets: impl Iterator<Item = i64>) -> Self {
-        let reach = |preset: i64| Reach { preset, end: 0, start: Some(0), run: 0 };
-        Self { runs: vec![Run { first: 0, time: 0, step: 0 }], last: 0, now: 0, reaches: presets.map(reach).collect() }
+        let reach = |preset: i64| Reach { preset, end: 0, start: Some(0), run: 0, goes_on: false };
+        let (runs, reaches) = (vec![Run { first: 0, time: 0, step: 0 }], presets.map(reach).collect());
+        Self { runs, last: 0, now: 0, reaches, ahead: 0, steady_before: None }
     }
 
     /// Whether the next scan may happen at a time: not before the last one.
@@ -58,8 +65,33 @@ impl History {
     /// Adds a scan, at a time that it [accepts](History::accepts); gives its number. Every preset then reaches as far
     /// back from it as it does.
     pub(super) fn begin(&mut self, now: i64) -> u64 {
-        let Self { runs, last, reaches, .. } = self;
+        let step = now - self.now;
+        let run = self.runs[self.runs.len() - 1];
+        if run.step == step && self.last > run.first && self.steady_before.is_some_and(|before| now < before) {
+            (self.last, self.now, self.ahead) = (self.last + 1, now, self.ahead + 1);
+            return self.last;
+        }
+        self.look_at_all(now);
+        self.last += 1;
+        let end = self.runs.len() - 1;
+        if self.last == self.runs[end].first + 1 {
+            self.runs[end].step = step;
+        } else if self.runs[end].step != step {
+            self.runs.push(Run { first: self.last, time: now, step: 0 });
+        }
+        self.now = now;
+        self.foresee();
+        self.last
+    }
+
+    /// Finds how far back each preset reaches from a time.
+    fn look_at_all(&mut self, now: i64) {
+        let Self { runs, last, reaches, ahead, .. } = self;
+        let ahead = std::mem::take(ahead);
         for reach in reaches {
+            if ahead > 0 && reach.goes_on {
+                (reach.end, reach.start) = (reach.end + ahead, None);
+            }
             while reach.end <= *last {
                 let start = *reach.start.get_or_insert_with(|| {
                     while runs.get(reach.run + 1).is_some_and(|run| run.first <= reach.end) {
@@ -73,21 +105,32 @@ impl History {
                 (reach.end, reach.start) = (reach.end + 1, None);
             }
         }
-        let step = now - self.now;
-        self.last += 1;
-        let end = runs.len() - 1;
-        if self.last == runs[end].first + 1 {
-            runs[end].step = step;
-        } else if runs[end].step != step {
-            runs.push(Run { first: self.last, time: now, step: 0 });
+    }
+
+    /// Finds out whether the next scans, after equal steps, need no look at each preset: one goes on by one scan with each
+    /// of them once the last scan that it reaches is in the run of equal steps, since `now - start` is then the same
+    /// for both; one that reaches no scan yet stays until its time comes.
+    fn foresee(&mut self) {
+        let run = self.runs[self.runs.len() - 1];
+        let mut before = i64::MAX;
+        for reach in &mut self.reaches {
+            // Scan 0 is at the time 0.
+            reach.goes_on = reach.end > run.first;
+            if !reach.goes_on {
+                if reach.end > 0 {
+                    self.steady_before = None;
+                    return;
+                }
+                before = before.min(reach.preset);
+            }
         }
-        self.now = now;
-        self.last
+        self.steady_before = Some(before);
     }
 
     /// The scans, from 0, that are at least as long ago as a preset: all before this number.
     pub(super) fn reach(&self, preset: usize) -> u64 {
-        self.reaches[preset].end
+        let Reach { end, goes_on, .. } = self.reaches[preset];
+        if goes_on { end + self.ahead } else { end }
     }
 
     /// The time of a scan that has been.

@@ -10,6 +10,7 @@ mod chunk;
 use std::collections::HashMap;
 
 use super::columns::{Column, Step};
+use super::track::ROW_BITS;
 use super::recognise::{Answer, Due, Leaf, Recognised, Tracked, recognise};
 use crate::elementary::Elementary;
 use crate::logic::{Program, SlotId};
@@ -69,10 +70,28 @@ pub(super) struct Track {
     pub(super) tracked: Tracked,
     pub(super) ty: Elementary,
     pub(super) initial: u64,
-    /// The first of its words in a row. Latches have those of their own index.
+    /// The first of its words in a row, and how far it is to the next. Latches have those of their own index.
     pub(super) row: usize,
+    pub(super) stride: usize,
     /// The codes that stand for a difference, each with the index of its latch.
     pub(super) since: Vec<(usize, usize)>,
+}
+
+/// Tracked slots with codes of as many bits, at least one. In a row stand the lowest bits of all of them, then the next.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Class {
+    pub(super) bits: usize,
+    /// Which of [`Plan::tracks`].
+    pub(super) tracks: std::ops::Range<usize>,
+    /// The first of its words in a row.
+    pub(super) row: usize,
+}
+
+impl Class {
+    /// Words that sum up a slot's codes: whether there is any, the bits of its row's number, and its bits, of more than one.
+    pub(super) fn sums(&self) -> usize {
+        1 + ROW_BITS + if self.bits > 1 { self.bits } else { 0 }
+    }
 }
 
 /// Questions with one preset, as a range of [`Plan::dues`].
@@ -95,6 +114,8 @@ pub(super) struct Plan {
     pub(super) constants: Vec<(Column, u64)>,
     /// Latches first.
     pub(super) tracks: Vec<Track>,
+    /// Latches are the first class.
+    pub(super) classes: Vec<Class>,
     /// How many of them are latches.
     pub(super) latches: usize,
     /// Words of a row.
@@ -157,6 +178,7 @@ impl Plan {
             columns: [0; 4],
             constants: Vec::new(),
             tracks: Vec::new(),
+            classes: Vec::new(),
             latches: recognised.tracked.iter().filter(|tracked| tracked.is_latch()).count(),
             row_words: 0,
             dues: Vec::new(),
@@ -164,11 +186,17 @@ impl Plan {
             first_due: 0,
             tasks: Vec::new(),
         };
-        for tracked in &recognised.tracked {
-            let slot = program.layout.slot(tracked.slot);
-            let (ty, initial, row) = (slot.ty, slot.initial.bits(), plan.row_words);
-            plan.row_words += tracked.bits();
-            plan.tracks.push(Track { tracked: tracked.clone(), ty, initial, row, since: Vec::new() });
+        for class in recognised.tracked.chunk_by(|a, b| (a.is_latch(), a.bits()) == (b.is_latch(), b.bits())) {
+            let (bits, first, row) = (class[0].bits(), plan.tracks.len(), plan.row_words);
+            for (tracked, row) in class.iter().zip(row..) {
+                let slot = program.layout.slot(tracked.slot);
+                let (ty, initial, stride) = (slot.ty, slot.initial.bits(), class.len());
+                plan.tracks.push(Track { tracked: tracked.clone(), ty, initial, row, stride, since: Vec::new() });
+            }
+            plan.row_words += bits * class.len();
+            if bits > 0 {
+                plan.classes.push(Class { bits, tracks: first..plan.tracks.len(), row });
+            }
         }
         let tracked: HashMap<SlotId, usize> = plan.tracks.iter().map(|track| track.tracked.slot).zip(0..).collect();
         for track in &mut plan.tracks {

@@ -84,7 +84,7 @@ pub(super) enum Answer {
 /// What was recognised in a program.
 #[derive(Debug, Default)]
 pub(super) struct Recognised {
-    /// Latches first; each kind in the order of the slots.
+    /// Latches first, then by the bits of their codes; each kind in the order of the slots.
     pub(super) tracked: Vec<Tracked>,
     /// The comparisons that are answered from when a latch was set.
     pub(super) answers: HashMap<ValueId, Answer>,
@@ -368,7 +368,7 @@ impl Accounts {
             absorbed.extend(choice.selects);
             tracked.push(Tracked { slot, store: choice.store, leaves: choice.leaves });
         }
-        tracked.sort_by_key(|tracked| !tracked.is_latch());
+        tracked.sort_by_key(|tracked| (!tracked.is_latch(), tracked.bits()));
         Recognised { tracked, answers: self.answers, absorbed }
     }
 }

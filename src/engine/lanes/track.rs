@@ -1,4 +1,4 @@
-//! Tracked slots, of all 128 lanes: which choice was taken last, and in which scan.
+//! Tracked slots, of all lanes of a group: which choice was taken last, and in which scan.
 //!
 //! A scan leaves a **row** of codes: for each tracked slot, in each lane, which of its [leaves](Leaf) it was given, or 0
 //! where it kept what it held. A row costs the scan one store a bit. Rows of [`ROWS`] scans side by side, an **epoch**,
@@ -22,16 +22,13 @@ use std::ops::Range;
 
 use super::LANES;
 use super::history::History;
-use super::plan::{Plan, Track};
+use super::plan::{Class, Plan, Track};
 use super::recognise::Leaf;
 use super::word::Word;
 
 /// Scans of an epoch: a power of two, so that the number of a scan in it is some bits of its number.
 pub(super) const ROWS: usize = 1 << ROW_BITS;
-const ROW_BITS: usize = 4;
-
-/// Bits of a code, at most.
-const CODE_BITS: usize = 3;
+pub(super) const ROW_BITS: usize = 4;
 
 /// Bits of a scan's number.
 const PLANES: usize = 32;
@@ -47,6 +44,8 @@ pub(super) struct Tracks {
     row_words: usize,
     /// By latch: the lanes in which it was set in this epoch, before the last scan's row was added.
     set: Vec<Word>,
+    /// By class: memory for the sums of an epoch.
+    sums: Vec<Vec<Word>>,
     /// By tracked slot, as in a row: the last code before this epoch.
     codes: Vec<Word>,
     /// By bit, then by tracked slot: the number of the scan that had it. Bits that no number has yet are not there.
@@ -74,6 +73,7 @@ impl Tracks {
             rows: vec![Word::ZEROS; plan.row_words * ROWS],
             row_words: plan.row_words,
             set: vec![Word::ZEROS; plan.latches],
+            sums: plan.classes.iter().map(|class| vec![Word::ZEROS; class.sums() * class.tracks.len()]).collect(),
             codes: vec![Word::ZEROS; plan.row_words],
             planes: Vec::new(),
             values: vec![None; plan.tracks.len()],
@@ -82,50 +82,59 @@ impl Tracks {
         }
     }
 
-    /// Makes the answers for a scan that has begun, and its row ready: with all 0, if not everything will run.
-    pub(super) fn begin(&mut self, plan: &Plan, history: &History, words: &mut [Word], all_run: bool) {
+    /// Makes the answers for a scan that has begun, and its row ready: with all 0, if not everything will run. `sum_up`
+    /// makes the sums of a class out of rows.
+    pub(super) fn begin(
+        &mut self,
+        plan: &Plan,
+        history: &History,
+        words: &mut [Word],
+        all_run: bool,
+        sum_up: impl Fn(usize, &mut [Word], &mut [Word]),
+    ) {
         let scan = history.last();
-        if !plan.tracks.is_empty() {
-            let last = row(scan - 1) * self.row_words;
-            for (set, noted) in self.set.iter_mut().zip(&self.rows[last..]) {
-                *set |= *noted;
+        if plan.tracks.is_empty() {
+            return;
+        }
+        let last = row(scan - 1) * self.row_words;
+        for (set, noted) in self.set.iter_mut().zip(&self.rows[last..]) {
+            *set |= *noted;
+        }
+        if row(scan) == 0 {
+            for (class, to) in self.sums.iter_mut().enumerate() {
+                sum_up(class, to, &mut self.rows);
             }
-            if row(scan) == 0 {
-                self.end_epoch(plan, history);
-            }
-            if !all_run {
-                self.row(scan).fill(Word::ZEROS);
-            }
+            self.end_epoch(plan, history);
+        }
+        if !all_run {
+            self.row(scan).fill(Word::ZEROS);
         }
         let answers = &mut words[plan.first_due as usize..][..plan.dues.len()];
         for (index, preset) in plan.presets.iter().enumerate() {
             // One past the last scan that is long ago.
             let end = history.reach(index);
-            if end == scan {
-                answers[preset.dues.clone()].fill(Word::ONES);
-                continue;
-            }
-            let Some(reached) = end.checked_sub(1) else {
-                answers[preset.dues.clone()].fill(Word::ZEROS);
-                continue;
-            };
-            if epoch(reached) == epoch(scan) {
+            let reached = end.wrapping_sub(1);
+            if end == scan || end == 0 {
+                answers[preset.dues.clone()].fill(Word::all(end != 0));
+            } else if epoch(reached) == epoch(scan) {
                 for due in preset.dues.clone() {
                     let later = row(end)..row(scan);
                     let set = later.fold(Word::ZEROS, |set, at| set | self.rows[at * self.row_words + plan.dues[due]]);
                     answers[due] = !set;
                 }
-                continue;
-            }
-            if self.epochs[index] != Some(epoch(reached)) {
-                self.epochs[index] = Some(epoch(reached));
-                for due in preset.dues.clone() {
-                    self.windows[due] = self.window(plan.dues[due], epoch(reached));
+            } else {
+                if self.epochs[index] != Some(epoch(reached)) {
+                    self.epochs[index] = Some(epoch(reached));
+                    for due in preset.dues.clone() {
+                        self.windows[due] = self.window(plan.dues[due], epoch(reached));
+                    }
                 }
-            }
-            let at = row(reached);
-            for due in preset.dues.clone() {
-                answers[due] = self.windows[due][at] & !self.set[plan.dues[due]];
+                let at = row(reached);
+                let dues = answers[preset.dues.clone()].iter_mut();
+                let windows = &self.windows[preset.dues.clone()];
+                for ((answer, window), latch) in dues.zip(windows).zip(&plan.dues[preset.dues.clone()]) {
+                    *answer = window[at] & !self.set[*latch];
+                }
             }
         }
     }
@@ -163,7 +172,7 @@ impl Tracks {
         less
     }
 
-    /// Sums up the epoch before the one that begins.
+    /// Adds the sums of the epoch before the one that begins to those of all before.
     #[cold]
     #[inline(never)]
     fn end_epoch(&mut self, plan: &Plan, history: &History) {
@@ -172,9 +181,10 @@ impl Tracks {
         while self.planes.len() < highest.max(ROW_BITS).min(PLANES) {
             self.planes.push(vec![Word::ZEROS; plan.tracks.len()]);
         }
-        // Differences look at what their latches held, so latches come last.
-        for (index, track) in plan.tracks.iter().enumerate().rev() {
-            self.sum_up(plan, history, index, track, ended);
+        // Differences look at what their latches held, and the latches are the first class.
+        for (index, class) in plan.classes.iter().enumerate().rev() {
+            self.add_codes(plan, history, index, class);
+            self.add_numbers(index, class, ended);
         }
         for (window, latch) in self.windows.iter_mut().zip(&plan.dues) {
             let still = !self.set[*latch];
@@ -183,78 +193,71 @@ impl Tracks {
         self.set.fill(Word::ZEROS);
     }
 
-    fn sum_up(&mut self, plan: &Plan, history: &History, index: usize, track: &Track, ended: u64) {
-        let bits = track.tracked.bits();
-        // Lanes of which the last code is not found yet; then those of which it was before this epoch.
-        let mut open = Word::ONES;
-        let mut codes = [Word::ZEROS; CODE_BITS];
-        let mut numbers = [Word::ZEROS; ROW_BITS];
-        for at in (0..ROWS).rev() {
-            let noted = &self.rows[at * self.row_words + track.row..][..bits];
-            let found = noted.iter().fold(Word::ZEROS, |any, bit| any | *bit) & open;
-            if found.is_zero() {
-                continue;
+    /// Brings the last codes up to date. A difference to a latch that was set since becomes a value that is kept.
+    fn add_codes(&mut self, plan: &Plan, history: &History, index: usize, class: &Class) {
+        let (length, sums) = (class.tracks.len(), &self.sums[index]);
+        let any = &sums[..length];
+        // The only bit of a code is whether there is one.
+        let code = |bit: usize| if class.bits == 1 { any } else { &sums[(1 + ROW_BITS + bit) * length..][..length] };
+        for bit in 0..class.bits {
+            let codes = &mut self.codes[class.row + bit * length..][..length];
+            for ((code, new), any) in codes.iter_mut().zip(code(bit)).zip(any) {
+                *code = *code & !*any | *new;
             }
-            for (code, noted) in codes.iter_mut().zip(noted) {
-                *code |= *noted & found;
-            }
-            for (bit, number) in numbers.iter_mut().enumerate() {
-                if at >> bit & 1 != 0 {
-                    *number |= found;
+        }
+        for (place, track) in class.tracks.clone().enumerate() {
+            let since = plan.tracks[track].since.iter();
+            let moved = since.fold(Word::ZEROS, |all, (code, latch)| {
+                all | self.moved(&plan.tracks[track], index, place, *code, *latch)
+            });
+            for lane in moved.lanes() {
+                let scans = history.last() - ROWS as u64..history.last();
+                let value = self.value(plan, history, track, lane, scans);
+                self.keep(&plan.tracks[track], track, lane, value);
+                for bit in 0..class.bits {
+                    self.codes[class.row + bit * length + place].set(lane, false);
                 }
             }
-            open &= !found;
-            if open.is_zero() {
-                break;
-            }
-        }
-        for (code, before) in codes.iter_mut().zip(&self.codes[track.row..][..bits]) {
-            *code |= *before & open;
-        }
-        // Before any of them loses its code.
-        let moved = track.since.iter().map(|(code, latch)| self.moved(track, *code, *latch, codes, open));
-        for lane in moved.fold(Word::ZEROS, |all, moved| all | moved).lanes() {
-            let value = self.value(plan, history, index, lane, ended * ROWS as u64..history.last());
-            self.keep(track, index, lane, value);
-            codes.iter_mut().for_each(|code| code.set(lane, false));
-        }
-        self.codes[track.row..][..bits].copy_from_slice(&codes[..bits]);
-        for (bit, plane) in self.planes.iter_mut().enumerate() {
-            let number = match numbers.get(bit) {
-                Some(number) => *number,
-                None => Word::all(ended >> (bit - ROW_BITS) & 1 != 0) & !open,
-            };
-            plane[index] = plane[index] & open | number;
         }
     }
 
-    /// The lanes in which a slot holds a difference to a latch that was set in the same scan or later, in the epoch that
-    /// ended. `open` are those whose code is from before.
-    fn moved(&self, track: &Track, code: usize, latch: usize, codes: [Word; CODE_BITS], mut open: Word) -> Word {
-        let bits = track.tracked.bits();
-        let has = |bits: &[Word]| {
-            let pairs = bits.iter().enumerate();
-            pairs.fold(Word::ONES, |has, (bit, word)| has & if code >> bit & 1 != 0 { *word } else { !*word })
-        };
-        let holding = has(&codes[..bits]);
-        if (holding & self.set[latch]).is_zero() {
-            return Word::ZEROS;
-        }
-        let mut moved = holding & open & self.set[latch];
-        let mut set = Word::ZEROS;
-        open = !open;
-        for at in (0..ROWS).rev() {
-            let row = &self.rows[at * self.row_words..];
-            set |= row[latch];
-            let noted = &row[track.row..][..bits];
-            let found = noted.iter().fold(Word::ZEROS, |any, bit| any | *bit) & open;
-            moved |= found & has(noted) & set;
-            open &= !found;
-            if open.is_zero() {
-                break;
+    /// Brings the numbers of the scans of the last codes up to date.
+    fn add_numbers(&mut self, index: usize, class: &Class, ended: u64) {
+        let (length, sums) = (class.tracks.len(), &self.sums[index]);
+        let any = &sums[..length];
+        for (bit, plane) in self.planes.iter_mut().enumerate() {
+            let plane = &mut plane[class.tracks.clone()];
+            if bit < ROW_BITS {
+                let number = &sums[(1 + bit) * length..][..length];
+                for ((plane, number), any) in plane.iter_mut().zip(number).zip(any) {
+                    *plane = *plane & !*any | *number;
+                }
+            } else if ended >> (bit - ROW_BITS) & 1 != 0 {
+                plane.iter_mut().zip(any).for_each(|(plane, any)| *plane |= *any);
+            } else {
+                plane.iter_mut().zip(any).for_each(|(plane, any)| *plane &= !*any);
             }
         }
-        moved
+    }
+
+    /// The lanes in which a slot now holds a difference to a latch that was set in the same scan or later, in the epoch
+    /// that ended: in a row as late as that of the code, or in any if the code is from before.
+    fn moved(&self, track: &Track, index: usize, place: usize, code: usize, latch: usize) -> Word {
+        let holding = (0..track.tracked.bits()).fold(Word::ONES, |holding, bit| {
+            let word = self.codes[track.row + bit * track.stride];
+            holding & if code >> bit & 1 != 0 { word } else { !word }
+        });
+        // Latches are the first class, in their own order.
+        let (sums, latches) = (&self.sums[index], &self.sums[0]);
+        let (length, latch_length) = (track.stride, latches.len() / (1 + ROW_BITS));
+        let (any, set) = (sums[place], latches[latch]);
+        let (mut less, mut same) = (Word::ZEROS, Word::ONES);
+        for bit in (1..=ROW_BITS).rev() {
+            let (own, of_latch) = (sums[bit * length + place], latches[bit * latch_length + latch]);
+            less |= same & of_latch & !own;
+            same &= own & of_latch | !(own | of_latch);
+        }
+        holding & set & (!any | less | same)
     }
 
     /// Keeps a value for itself in a lane.
@@ -273,8 +276,8 @@ impl Tracks {
     fn value(&self, plan: &Plan, history: &History, index: usize, lane: usize, scans: Range<u64>) -> u64 {
         let track = &plan.tracks[index];
         let code_in = |words: &[Word]| {
-            let bits = words[track.row..].iter().take(track.tracked.bits()).enumerate();
-            bits.fold(0, |code, (bit, word)| code | usize::from(word.get(lane)) << bit)
+            let bit = |bit: usize| usize::from(words[track.row + bit * track.stride].get(lane)) << bit;
+            (0..track.tracked.bits()).map(bit).sum::<usize>()
         };
         let found = scans.clone().rev().map(|scan| (code_in(&self.rows[row(scan) * self.row_words..]), scan));
         let (code, scan) = found.into_iter().find(|(code, _)| *code != 0).unwrap_or_else(|| {
@@ -301,10 +304,10 @@ impl Tracks {
             return false;
         }
         self.keep(track, index, lane, value);
-        let own = track.row..track.row + track.tracked.bits();
-        self.codes[own.clone()].iter_mut().for_each(|code| code.set(lane, false));
-        for row in self.rows.chunks_mut(self.row_words) {
-            row[own.clone()].iter_mut().for_each(|code| code.set(lane, false));
+        for bit in 0..track.tracked.bits() {
+            let word = track.row + bit * track.stride;
+            self.codes[word].set(lane, false);
+            self.rows.chunks_mut(self.row_words).for_each(|row| row[word].set(lane, false));
         }
         true
     }

@@ -1,17 +1,29 @@
-//! One bit for each of 128 lanes: what a BOOL is here.
+//! One bit for each lane of a group: what a BOOL is here.
 
-use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Not};
+use std::array::from_fn;
+use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, Not};
 
-/// A bit for each lane: lane 0 is the lowest of the first half. Aligned as vector instructions want it.
+use super::LANES;
+
+/// Vectors of 128 bits in a word, which code goes through one after the other. Four are a line of the cache, of which so
+/// nothing is fetched in vain, and code that is fetched once runs four times; more would not fit beside each other.
+pub(in crate::engine) const VECTORS: usize = 4;
+
+/// Lanes of a vector.
+pub(super) const VECTOR_LANES: usize = 128;
+
+const HALVES: usize = VECTORS * 2;
+
+/// A bit for each lane: lane 0 is the lowest of the first 64.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[repr(C, align(16))]
-pub(in crate::engine) struct Word([u64; 2]);
+#[repr(C, align(64))]
+pub(in crate::engine) struct Word([u64; HALVES]);
 
 impl Word {
     /// FALSE in every lane.
-    pub(super) const ZEROS: Self = Self([0; 2]);
+    pub(super) const ZEROS: Self = Self([0; HALVES]);
     /// TRUE in every lane.
-    pub(super) const ONES: Self = Self([u64::MAX; 2]);
+    pub(super) const ONES: Self = Self([u64::MAX; HALVES]);
 
     /// The same in every lane.
     pub(super) const fn all(value: bool) -> Self {
@@ -21,16 +33,16 @@ impl Word {
     /// Whether it is FALSE in every lane.
     #[inline]
     pub(super) fn is_zero(self) -> bool {
-        self.0[0] | self.0[1] == 0
+        self.0.into_iter().fold(0, |any, half| any | half) == 0
     }
 
-    /// Whether a lane, below 128, is TRUE.
+    /// Whether a lane is TRUE.
     #[inline]
     pub(super) fn get(self, lane: usize) -> bool {
         self.0[lane / 64] >> (lane % 64) & 1 != 0
     }
 
-    /// Sets a lane, below 128.
+    /// Sets a lane.
     #[inline]
     pub(super) fn set(&mut self, lane: usize, value: bool) {
         let bit = 1 << (lane % 64);
@@ -38,15 +50,37 @@ impl Word {
         *half = *half & !bit | if value { bit } else { 0 };
     }
 
+    /// The lanes of a vector, the first as the lowest bit.
+    pub(super) fn vector(self, vector: usize) -> u128 {
+        u128::from(self.0[vector * 2]) | u128::from(self.0[vector * 2 + 1]) << 64
+    }
+
+    /// Sets the lanes of a vector, the first by the lowest bit.
+    pub(super) fn set_vector(&mut self, vector: usize, bits: u128) {
+        #[expect(clippy::cast_possible_truncation, reason = "the two halves")]
+        {
+            (self.0[vector * 2], self.0[vector * 2 + 1]) = (bits as u64, (bits >> 64) as u64);
+        }
+    }
+
     /// The lanes that are TRUE, in order.
     pub(super) fn lanes(self) -> impl Iterator<Item = usize> {
-        (0..super::LANES).filter(move |lane| self.get(*lane))
+        (0..VECTORS).flat_map(move |vector| {
+            let mut left = self.vector(vector);
+            std::iter::from_fn(move || {
+                let lane = left.trailing_zeros() as usize;
+                (left != 0).then(|| {
+                    left &= left - 1;
+                    vector * VECTOR_LANES + lane
+                })
+            })
+        })
     }
 
     /// A byte for each lane, of which the lowest bit is set where it is TRUE, and no other.
     #[inline]
-    pub(super) fn bytes(self) -> [u8; super::LANES] {
-        let mut bytes = [0; super::LANES];
+    pub(super) fn bytes(self) -> [u8; LANES] {
+        let mut bytes = [0; LANES];
         for (half, bytes) in self.0.iter().zip(bytes.as_chunks_mut::<64>().0) {
             for (eight, bytes) in half.to_le_bytes().into_iter().zip(bytes.as_chunks_mut::<8>().0) {
                 // Each byte gets all eight bits and keeps its own, which then carries into the top bit, and no further.
@@ -59,8 +93,8 @@ impl Word {
 
     /// The lanes of which the byte, 0 or 1, is 1: the inverse of [`Word::bytes`].
     #[inline]
-    pub(super) fn of_bytes(bytes: &[u8; super::LANES]) -> Self {
-        let mut halves = [0; 2];
+    pub(super) fn of_bytes(bytes: &[u8; LANES]) -> Self {
+        let mut halves = [0; HALVES];
         for (half, bytes) in halves.iter_mut().zip(bytes.as_chunks::<64>().0) {
             for (index, eight) in bytes.as_chunks::<8>().0.iter().enumerate() {
                 // The product has bit i of the top byte from byte i, and no two terms meet.
@@ -72,52 +106,30 @@ impl Word {
     }
 }
 
-impl From<u128> for Word {
-    fn from(bits: u128) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "the two halves")]
-        Self([bits as u64, (bits >> 64) as u64])
-    }
-}
-
-impl From<Word> for u128 {
-    fn from(word: Word) -> Self {
-        Self::from(word.0[0]) | Self::from(word.0[1]) << 64
-    }
-}
-
 impl BitAnd for Word {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self([self.0[0] & other.0[0], self.0[1] & other.0[1]])
+        Self(from_fn(|half| self.0[half] & other.0[half]))
     }
 }
 
 impl BitOr for Word {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self([self.0[0] | other.0[0], self.0[1] | other.0[1]])
-    }
-}
-
-impl BitXor for Word {
-    type Output = Self;
-
-    #[inline]
-    fn bitxor(self, other: Self) -> Self {
-        Self([self.0[0] ^ other.0[0], self.0[1] ^ other.0[1]])
+        Self(from_fn(|half| self.0[half] | other.0[half]))
     }
 }
 
 impl Not for Word {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn not(self) -> Self {
-        Self([!self.0[0], !self.0[1]])
+        Self(self.0.map(|half| !half))
     }
 }
 
@@ -142,23 +154,24 @@ mod tests {
     #[test]
     fn bits_become_bytes_and_bytes_bits() {
         let mut bits = 0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C834_u128;
-        for _ in 0..200 {
+        let mut word = Word::ZEROS;
+        for round in 0..200 {
             bits = bits.rotate_left(7) ^ bits.wrapping_mul(0x2545_F491_4F6C_DD1D);
-            let word = Word::from(bits);
+            word.set_vector(round % VECTORS, bits);
+            assert_eq!(word.vector(round % VECTORS), bits);
             let bytes = word.bytes();
-            let expected: Vec<u8> = (0..super::super::LANES).map(|lane| (bits >> lane & 1) as u8).collect();
+            let expected: Vec<u8> = (0..LANES).map(|lane| u8::from(word.get(lane))).collect();
             assert_eq!(bytes.as_slice(), expected);
             assert_eq!(Word::of_bytes(&bytes), word);
-            assert_eq!(u128::from(word), bits);
+            assert_eq!(word.lanes().count(), expected.iter().filter(|bit| **bit == 1).count());
         }
     }
 
     #[test]
     fn a_lane_is_set_alone() {
-        for lane in [0, 1, 63, 64, 127] {
+        for lane in [0, 1, 63, 64, 127, 128, LANES - 1] {
             let mut word = Word::ZEROS;
             word.set(lane, true);
-            assert_eq!(u128::from(word), 1 << lane);
             assert_eq!(word.lanes().collect::<Vec<_>>(), [lane]);
             word.set(lane, false);
             assert!(word.is_zero());

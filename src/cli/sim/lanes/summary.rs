@@ -48,7 +48,8 @@ impl Summary {
     pub(super) fn add(&mut self, part: &Part<'_>, variable: Variable) {
         self.count += part.lanes() as u64;
         if self.ty == Elementary::Bool {
-            self.on += u64::from(part.word(variable).count_ones());
+            let words = (0..part.words()).filter_map(|word| part.word(word, variable).ok());
+            self.on += words.map(|word| u64::from(word.count_ones())).sum::<u64>();
             return;
         }
         for value in (0..part.lanes()).filter_map(|lane| part.get(lane, variable).ok()) {

@@ -9,6 +9,10 @@ use crate::engine::lanes::columns::{Column, Elements, Place, Step};
 use crate::engine::lanes::recognise::{Due, Leaf};
 use crate::logic::{ArrayId, Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
 
+/// Operations after which a segment ends with its section. Its code goes through all vectors of a word, and what it
+/// touches in the first of them should still be near for the others: some 300 words are 20 kB.
+const MOST_OPS: usize = 450;
+
 /// Places beyond those of slots: what waits between pieces, and constants. Chunks use the same ones again.
 pub(super) struct Store {
     /// The first word, and how many are needed.
@@ -87,7 +91,7 @@ pub(super) fn pieces(
     store: &mut Store,
     sections: Range<usize>,
 ) -> Vec<Piece> {
-    let range = program.instruction_range(sections);
+    let range = program.instruction_range(sections.clone());
     let mut sorter = Sorter {
         program,
         plan,
@@ -107,11 +111,17 @@ pub(super) fn pieces(
         at: range.start,
         store,
     };
-    sorter.prepare(range.clone());
-    for index in range {
-        sorter.at = index;
-        sorter.instruction(index, program.instructions[index]);
-        sorter.release(index);
+    sorter.prepare(range);
+    for section in sections {
+        for index in program.section_range(section) {
+            sorter.at = index;
+            sorter.instruction(index, program.instructions[index]);
+            sorter.release(index);
+        }
+        if sorter.segment.len() >= MOST_OPS {
+            sorter.at += 1;
+            sorter.end_segment();
+        }
     }
     sorter.end_segment();
     sorter.end_steps();
@@ -333,7 +343,7 @@ impl Sorter<'_> {
         let track = &self.plan.tracks[track];
         let mut known = HashMap::new();
         let code = self.code(track, root, &mut known);
-        for (bit, word) in code.into_iter().zip(track.row..) {
+        for (bit, word) in code.into_iter().zip((track.row..).step_by(track.stride)) {
             self.push(BitOp::Note(u32::try_from(word).unwrap_or(u32::MAX), bit));
         }
     }
