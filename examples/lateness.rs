@@ -12,7 +12,7 @@ use rung_runtime::host::{
     Driver, Heartbeat, Histogram, MonotonicClock, Pace, Panel, PanelIo, Role, Statistics, TickThread, lock_memory,
     schedule_this_thread,
 };
-use rung_runtime::{Clock, Controller, Extent, Regions};
+use rung_runtime::{Clock, Extent, Regions, ScanLoop};
 
 /// In the scan after it fired, the timer is reset; in the one after that it starts again.
 const PROGRAM: &str = "program lateness\noutput fired\nrung r1\n  /fired delay:TON(PT := T#100ms) (fired)\n";
@@ -45,9 +45,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("tick thread {}, scan thread {}", ticks.scheduling(), schedule_this_thread(Role::Scan));
     println!("locked memory {}", lock_memory());
     let watchdog = u64::MAX;
-    let mut controller = Controller::new(engine, field, &ticks, clock, watchdog, regions, &mut image);
-    // The controller's time 0, which may be some ticks after the thread's.
-    let raw = controller.ticks().raw(0);
+    let mut scan_loop = ScanLoop::new(engine, field, &ticks, clock, watchdog, regions, &mut image);
+    // The scan loop's time 0, which may be some ticks after the thread's.
+    let raw = scan_loop.ticks().raw(0);
     let origin = ticks.moment(raw);
     let driver = Driver {
         cycle: EVERY_TICK,
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         stop: &stop,
     };
     let (mut before, mut started) = (false, Some(0));
-    let end = driver.run(&mut controller, |image, cycle| {
+    let end = driver.run(&mut scan_loop, |image, cycle| {
         let out = clock.nanoseconds();
         let now = cycle.now.unsigned_abs();
         let fires = fired.read(image).is_true();

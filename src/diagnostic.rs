@@ -118,6 +118,8 @@ codes! {
     PowerCycle = 523 Error "power that runs in a circle",
     NotConnected = 524 Error "an element that no wire reaches",
     NeverRuns = 525 Warning "a program that no task runs",
+    OpenAddress = 526 Warning "an address that the file leaves open",
+    ScanCount = 527 Warning "a duration that is given as a number of scans",
     // Limits.
     TooManyDiagnostics = 601 Error "too many diagnostics",
     ImageTooLarge = 602 Error "the process image is too large",

@@ -1,7 +1,11 @@
 //! The elementary data types of IEC 61131-3 and their values: the one vocabulary that the ladder model and
 //! the logic IR share. This module must know nothing of either.
 
+mod convert;
+
 use std::fmt;
+
+pub use convert::{ToValue, Unfit};
 
 /// An elementary data type (IEC 61131-3, table 10). TIME is 64 bits of nanoseconds, signed.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]

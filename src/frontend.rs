@@ -3,13 +3,18 @@
 //! One module a format. A front end is pure, and must never panic: whatever the bytes, the answer is a program,
 //! as far as one could be made out, and diagnostics. The format is found by content, never by the file's name.
 
+mod events;
+mod global_lists;
 mod graph;
 mod instances;
 mod leave_out;
+mod located;
 mod missing;
 pub mod native;
 pub mod openplc;
+mod other_names;
 pub mod plcopen;
+mod rewrite;
 pub mod structured_text;
 mod text;
 mod uses;
@@ -50,7 +55,9 @@ pub const FRONTENDS: &[Frontend] = &[
 /// Reads a source in the format that its content shows.
 pub fn parse(source: &Source) -> Parsed {
     let found = FRONTENDS.iter().find(|frontend| (frontend.recognises)(source.text()));
-    (found.map_or(native::parse as fn(&Source) -> Parsed, |frontend| frontend.parse))(source)
+    let mut parsed = (found.map_or(native::parse as fn(&Source) -> Parsed, |frontend| frontend.parse))(source);
+    other_names::settle(&mut parsed.program);
+    parsed
 }
 
 /// Whether a text looks like native text: like none of the other formats.

@@ -12,6 +12,7 @@ mod build;
 pub mod evaluate;
 pub mod image;
 pub mod map;
+pub mod mathematics;
 mod op;
 mod parse;
 mod print;

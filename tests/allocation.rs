@@ -11,7 +11,7 @@ use rung::engine::jit::Jit;
 use rung::replay::Recorder;
 use rung::source::Source;
 use rung_runtime::host::{MonotonicClock, Panel, PanelIo, Statistics};
-use rung_runtime::{Controller, Extent, Regions, Scan, TickCounter};
+use rung_runtime::{Extent, Regions, Scan, ScanLoop, TickCounter};
 
 /// Counts this thread's allocations.
 struct Counting;
@@ -91,12 +91,12 @@ fn a_cycle_and_its_measurement_allocate_nothing() {
     let both = Both::new(Interpreter::new(&program), Interpreter::new(&program), layout);
     let scan = Recorder::new(both, layout);
     let counter = TickCounter::new(NonZeroU32::MIN);
-    let mut controller = Controller::new(scan, field, &counter, MonotonicClock, u64::MAX, regions, &mut image);
+    let mut scan_loop = ScanLoop::new(scan, field, &counter, MonotonicClock, u64::MAX, regions, &mut image);
     let statistics = Statistics::default();
     let made = allocations(|| {
         // More scans than the recorder keeps.
         for _ in 0..10_000 {
-            let cycle = controller.cycle().expect("nothing is wrong");
+            let cycle = scan_loop.cycle().expect("nothing is wrong");
             statistics.scan.record(cycle.took);
             counter.tick();
         }

@@ -7,7 +7,7 @@ use rung::engine::jit::Jit;
 use rung::logic::Program;
 use rung::source::Source;
 use rung_runtime::host::{Panel, PanelIo};
-use rung_runtime::{Clock, Controller, Extent, Regions, Scan, TickCounter};
+use rung_runtime::{Clock, Extent, Regions, Scan, ScanLoop, TickCounter};
 
 const MILLISECOND: NonZeroU32 = NonZeroU32::new(1_000_000).expect("not zero");
 
@@ -40,10 +40,10 @@ fn fires_after(program: &Program, engine: impl Scan, counter: &TickCounter, cycl
         layout.slot(observed.slot).offset
     };
     let field = PanelIo::new(panel.clone());
-    let mut controller = Controller::new(engine, field, counter, StandingClock, 1, regions, &mut image);
+    let mut scan_loop = ScanLoop::new(engine, field, counter, StandingClock, 1, regions, &mut image);
     let mut start = None;
     loop {
-        let now = controller.cycle().expect("nothing is wrong").now / 1_000_000;
+        let now = scan_loop.cycle().expect("nothing is wrong").now / 1_000_000;
         let mut out = [0];
         panel.output(slot("q"), &mut out);
         match start {

@@ -1,23 +1,29 @@
 //! What every Rung program runs on: the process image, the tick counter and the scan loop.
 //!
 //! The core needs no standard library, no memory but what it is given and no other crate. Ticks come from an
-//! interrupt, the field is behind [`FieldIo`], and [`Controller`] runs one cycle after another between them.
+//! interrupt, the field is behind [`FieldIo`], and [`ScanLoop`] runs one cycle after another between them.
+//! What runs may be any [`Scan`]: an engine of the library `rung`, or machine code that `rung build` wrote and
+//! [`program!`] names, in firmware without any of Rung's compiler.
+//!
 //! With the feature `host` there is also [`host`]: a thread for the interrupt, real-time scheduling, a periodic
 //! driver with statistics and a simulated panel. Only that part reads clocks, starts threads or calls the system.
 #![cfg_attr(not(feature = "host"), no_std)]
-#![cfg_attr(not(feature = "host"), forbid(unsafe_code))]
 
-mod controller;
 #[cfg(feature = "host")]
 pub mod host;
 mod image;
 mod io;
+mod linked;
+mod scan_loop;
 mod schedule;
 mod tick;
 
-pub use controller::{Clock, Controller, Cycle, Fault, Stopped};
 pub use image::{BadRegions, Extent, Inputs, Outputs, Regions};
 pub use io::FieldIo;
+#[doc(hidden)]
+pub use linked::Symbols;
+pub use linked::{ABI_VERSION, IMAGE_ALIGNMENT, Instance, LinkError, Linked, Memory, Retained};
+pub use scan_loop::{Clock, Cycle, Fault, ScanLoop, Stopped};
 pub use schedule::Schedule;
 pub use tick::{Latch, TickCounter, TickSource};
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::slice;
 
 use rung_runtime::{
-    BadRegions, Clock, Controller, Cycle, Extent, Fault, FieldIo, Inputs, Outputs, Regions, Scan, Stopped, TickCounter,
+    BadRegions, Clock, Cycle, Extent, Fault, FieldIo, Inputs, Outputs, Regions, Scan, ScanLoop, Stopped, TickCounter,
 };
 
 const WATCHDOG: u64 = 1_000;
@@ -93,31 +93,31 @@ fn inputs() -> Vec<Extent> {
 
 const OUTPUTS: Range<u32> = 4..5;
 
-/// Runs `test` with a controller over an image of 8 bytes; byte 2 is no input, byte 5 no output.
-fn with_controller(
-    test: impl FnOnce(&Bench, &TickCounter, &mut Controller<'_, Sum<'_>, Field<'_>, &TickCounter, FakeClock<'_>>),
+/// Runs `test` with a scan loop over an image of 8 bytes; byte 2 is no input, byte 5 no output.
+fn with_scan_loop(
+    test: impl FnOnce(&Bench, &TickCounter, &mut ScanLoop<'_, Sum<'_>, Field<'_>, &TickCounter, FakeClock<'_>>),
 ) -> Vec<String> {
     let (bench, counter) = (Bench::default(), TickCounter::new(NonZeroU32::new(1_000).expect("not zero")));
     let (inputs, mut image) = (inputs(), [9; 8]);
     let regions = Regions::new(&inputs, slice::from_ref(&OUTPUTS), &[], 8).expect("sound regions");
     let (scan, clock) = (Sum(&bench, &counter), FakeClock(&bench));
-    let mut controller = Controller::new(scan, Field(&bench), &counter, clock, WATCHDOG, regions, &mut image);
-    test(&bench, &counter, &mut controller);
-    drop(controller);
+    let mut scan_loop = ScanLoop::new(scan, Field(&bench), &counter, clock, WATCHDOG, regions, &mut image);
+    test(&bench, &counter, &mut scan_loop);
+    drop(scan_loop);
     bench.events()
 }
 
 #[test]
 fn inputs_come_before_the_scan_and_outputs_after_it_and_time_stands_still_within() {
-    let events = with_controller(|bench, counter, controller| {
+    let events = with_scan_loop(|bench, counter, scan_loop| {
         bench.input.set(2);
         bench.scan_takes.set(30);
         bench.output_takes.set(4);
-        assert_eq!(controller.cycle(), Ok(Cycle { now: 0, took: 34 }));
+        assert_eq!(scan_loop.cycle(), Ok(Cycle { now: 0, took: 34 }));
         counter.tick();
         bench.input.set(0);
-        assert_eq!(controller.cycle(), Ok(Cycle { now: 3_000, took: 34 }));
-        assert_eq!(controller.stop(), Ok(()));
+        assert_eq!(scan_loop.cycle(), Ok(Cycle { now: 3_000, took: 34 }));
+        assert_eq!(scan_loop.stop(), Ok(()));
     });
     // BOOLs are 1 where the field said 2; the INT-like byte and what is no input are left as they are.
     let expected =
@@ -131,11 +131,11 @@ fn a_field_that_fails_puts_the_outputs_off_and_nothing_runs_after() {
         ("in", Fault::Input("in"), vec!["in", "off"]),
         ("out", Fault::Output("out"), vec!["in", "scan 0 [0, 0, 9, 0]", "out [(4, [9])]", "off"]),
     ] {
-        let events = with_controller(|bench, _, controller| {
+        let events = with_scan_loop(|bench, _, scan_loop| {
             bench.fails.set(fails);
-            assert_eq!(controller.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
+            assert_eq!(scan_loop.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
             bench.fails.set("");
-            assert_eq!(controller.cycle(), Err(Stopped { fault: Fault::AlreadyStopped, outputs_off: Ok(()) }));
+            assert_eq!(scan_loop.cycle(), Err(Stopped { fault: Fault::AlreadyStopped, outputs_off: Ok(()) }));
         });
         assert_eq!(events, steps);
     }
@@ -143,47 +143,47 @@ fn a_field_that_fails_puts_the_outputs_off_and_nothing_runs_after() {
 
 #[test]
 fn outputs_that_cannot_be_put_off_are_told() {
-    with_controller(|bench, _, controller| {
+    with_scan_loop(|bench, _, scan_loop| {
         bench.fails.set("out, off");
         let stopped = Stopped { fault: Fault::Output("out"), outputs_off: Err("off") };
-        assert_eq!(controller.cycle(), Err(stopped));
+        assert_eq!(scan_loop.cycle(), Err(stopped));
     });
 }
 
 #[test]
 fn a_scan_past_the_watchdog_never_reaches_the_field() {
-    let events = with_controller(|bench, _, controller| {
+    let events = with_scan_loop(|bench, _, scan_loop| {
         bench.scan_takes.set(WATCHDOG);
-        assert_eq!(controller.cycle(), Ok(Cycle { now: 0, took: WATCHDOG }));
+        assert_eq!(scan_loop.cycle(), Ok(Cycle { now: 0, took: WATCHDOG }));
         bench.scan_takes.set(WATCHDOG + 1);
         let fault = Fault::Watchdog { took: WATCHDOG + 1, limit: WATCHDOG };
-        assert_eq!(controller.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
+        assert_eq!(scan_loop.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
     });
     assert_eq!(events[3..], ["in", "scan 2000 [0, 0, 9, 0]", "off"]);
 }
 
 #[test]
 fn a_copy_out_past_the_watchdog_puts_the_outputs_off() {
-    let events = with_controller(|bench, _, controller| {
+    let events = with_scan_loop(|bench, _, scan_loop| {
         bench.output_takes.set(WATCHDOG + 5);
         let fault = Fault::Watchdog { took: WATCHDOG + 5, limit: WATCHDOG };
-        assert_eq!(controller.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
+        assert_eq!(scan_loop.cycle(), Err(Stopped { fault, outputs_off: Ok(()) }));
     });
     assert_eq!(events.last().map(String::as_str), Some("off"));
 }
 
 #[test]
 fn a_scan_that_distrusts_itself_never_reaches_the_field() {
-    let events = with_controller(|bench, _, controller| {
+    let events = with_scan_loop(|bench, _, scan_loop| {
         bench.distrusted.set(true);
-        assert_eq!(controller.cycle(), Err(Stopped { fault: Fault::Distrusted, outputs_off: Ok(()) }));
+        assert_eq!(scan_loop.cycle(), Err(Stopped { fault: Fault::Distrusted, outputs_off: Ok(()) }));
     });
     assert_eq!(events, ["in", "scan 0 [0, 0, 9, 0]", "off"]);
 }
 
 #[test]
-fn a_controller_that_is_dropped_puts_the_outputs_off() {
-    assert_eq!(with_controller(|_, _, _| ()), ["off"]);
+fn a_scan_loop_that_is_dropped_puts_the_outputs_off() {
+    assert_eq!(with_scan_loop(|_, _, _| ()), ["off"]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::slice;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rung_runtime::host::{Driver, End, Heartbeat, Pace, Panel, PanelIo, Quantiles, Statistics};
-use rung_runtime::{Clock, Controller, Extent, Fault, FieldIo, Regions, Scan, Stopped, TickCounter, TickSource};
+use rung_runtime::{Clock, Extent, Fault, FieldIo, Regions, Scan, ScanLoop, Stopped, TickCounter, TickSource};
 
 const PERIOD: NonZeroU32 = NonZeroU32::new(1_000_000).expect("not zero");
 
@@ -91,7 +91,7 @@ fn run(machine: &Machine, usual: u64, once: (i64, u64)) -> Outcome<<PanelIo as F
     let (statistics, heartbeat, stop) = (Statistics::default(), Heartbeat::default(), AtomicBool::new(false));
     let scan = Slow { machine, usual, once };
     let field = PanelIo::new(panel.clone());
-    let mut controller = Controller::new(scan, field, Of(machine), Of(machine), 50_000_000, regions, &mut image);
+    let mut scan_loop = ScanLoop::new(scan, field, Of(machine), Of(machine), 50_000_000, regions, &mut image);
     let driver = Driver {
         cycle: NonZeroU32::new(10).expect("not zero"),
         ends_at: Some(100),
@@ -101,7 +101,7 @@ fn run(machine: &Machine, usual: u64, once: (i64, u64)) -> Outcome<<PanelIo as F
         stop: &stop,
     };
     let mut times = Vec::new();
-    let end = driver.run(&mut controller, |_, cycle| times.push(cycle.now / 1_000_000));
+    let end = driver.run(&mut scan_loop, |_, cycle| times.push(cycle.now / 1_000_000));
     Outcome { end, times, statistics, off: panel.is_off() }
 }
 
@@ -158,9 +158,9 @@ fn a_run_ends_on_time_also_between_cycles_and_when_it_is_asked_to() {
         let mut image = [0; 8];
         let field = PanelIo::new(Panel::new(&regions, &image));
         let scan = Slow { machine: &machine, usual: 0, once: (-1, 0) };
-        let mut controller = Controller::new(scan, field, Of(&machine), Of(&machine), 1_000, regions, &mut image);
+        let mut scan_loop = ScanLoop::new(scan, field, Of(&machine), Of(&machine), 1_000, regions, &mut image);
         let mut times = Vec::new();
-        let end = driver.run(&mut controller, |_, cycle| {
+        let end = driver.run(&mut scan_loop, |_, cycle| {
             times.push(cycle.now / 1_000_000);
             stop.store(times.len() == 3, Ordering::Relaxed);
         });
@@ -178,19 +178,19 @@ fn a_panel_carries_what_is_set_in_and_what_is_computed_out_until_it_is_off() {
     let panel = Panel::new(&regions, &image);
     let scan = Slow { machine: &machine, usual: 0, once: (-1, 0) };
     let field = PanelIo::new(panel.clone());
-    let mut controller = Controller::new(scan, field, Of(&machine), Of(&machine), 1_000, regions, &mut image);
+    let mut scan_loop = ScanLoop::new(scan, field, Of(&machine), Of(&machine), 1_000, regions, &mut image);
     let mut shown = [7];
     for byte in [None, Some(0), Some(1)] {
         if let Some(byte) = byte {
             assert!(panel.set(0, &[byte]));
         }
-        controller.cycle().expect("nothing is wrong");
+        scan_loop.cycle().expect("nothing is wrong");
         assert!(panel.output(1, &mut shown));
         assert_eq!(shown, [byte.unwrap_or(1)]);
     }
     // Once off, nothing that still comes out turns an output on again.
     panel.outputs_off();
-    controller.cycle().expect("nothing is wrong");
+    scan_loop.cycle().expect("nothing is wrong");
     assert!(panel.output(1, &mut shown));
     assert_eq!(shown, [0]);
     assert!(panel.input(0, &mut shown));

@@ -6,11 +6,13 @@
 
 use super::Checker;
 use super::constant::{self, Folded, Untyped};
+use super::function::Actual;
 use super::model::{Expression, ExpressionKind};
 use super::types;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
-use crate::ladder::{self, BinaryOperator, Literal, UnaryOperator};
+use crate::ladder::functions::{Function, StandardFunction};
+use crate::ladder::{self, BinaryOperator, Literal, Name, UnaryOperator};
 use crate::source::Span;
 
 /// An expression of which the type may still be open.
@@ -213,7 +215,31 @@ impl Checker<'_> {
     ) -> Option<Operand> {
         // Both first, so that errors in both are found.
         let (a, b) = (self.operand(left), self.operand(right));
+        let of_time = match op {
+            BinaryOperator::Multiply => Some(StandardFunction::MultiplyTime),
+            BinaryOperator::Divide => Some(StandardFunction::DivideTime),
+            _ => None,
+        };
+        let is_duration = |operand: &Option<Operand>| operand.as_ref().and_then(Operand::ty) == Some(Elementary::Time);
+        if let Some(function) = of_time.filter(|_| is_duration(&a) && !is_duration(&b)) {
+            return self.of_duration(function, (a?, left.span), (b?, right.span), span);
+        }
         self.binary_of(op, (a?, left.span), (b?, right.span), span)
+    }
+
+    /// A duration times or divided by a number, as MUL_TIME and DIV_TIME have it.
+    fn of_duration(
+        &mut self,
+        function: StandardFunction,
+        duration: (Operand, Span),
+        number: (Operand, Span),
+        span: Span,
+    ) -> Option<Operand> {
+        let actuals = [duration, number].map(|(operand, span)| Actual { operand: Some(operand), span });
+        let name = Name::new(function.name(), span);
+        let (function, operands, ty) =
+            self.typed_call(Function::Standard(function), &name, actuals.into(), Some(Elementary::Time))?;
+        self.called(function, operands.into_iter().map(|(operand, _)| operand).collect(), ty, span)
     }
 
     /// An operator on two operands, each with its place.

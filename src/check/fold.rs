@@ -5,6 +5,7 @@ use super::constant::{self, Folded};
 use crate::elementary::{Elementary, Value};
 use crate::ladder::BinaryOperator;
 use crate::ladder::functions::{Function, StandardFunction};
+use crate::mathematics::{self, Native};
 
 const SECOND: i128 = 1_000_000_000;
 const REAL_SECOND: f64 = 1e9;
@@ -29,18 +30,18 @@ fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> 
             None => real(f64::abs),
         },
         (F::SquareRoot, _) => real(f64::sqrt),
-        (F::Ln, _) => real(libm::log),
-        (F::Log, _) => real(libm::log10),
-        (F::Exp, _) => real(libm::exp),
-        (F::Sin, _) => real(libm::sin),
-        (F::Cos, _) => real(libm::cos),
-        (F::Tan, _) => real(libm::tan),
-        (F::Asin, _) => real(libm::asin),
-        (F::Acos, _) => real(libm::acos),
-        (F::Atan, _) => real(libm::atan),
+        (F::Ln, _) => real(|a| mathematics::ln(Native, a)),
+        (F::Log, _) => real(|a| mathematics::log10(Native, a)),
+        (F::Exp, _) => real(|a| mathematics::exp(Native, a)),
+        (F::Sin, _) => real(|a| mathematics::sin(Native, a)),
+        (F::Cos, _) => real(|a| mathematics::cos(Native, a)),
+        (F::Tan, _) => real(|a| mathematics::tan(Native, a)),
+        (F::Asin, _) => real(|a| mathematics::asin(Native, a)),
+        (F::Acos, _) => real(|a| mathematics::acos(Native, a)),
+        (F::Atan, _) => real(|a| mathematics::atan(Native, a)),
         (F::Power, [base, exponent]) => {
             let exponent = exponent.as_real().or_else(|| exponent.as_integer().map(|integer| integer as f64))?;
-            Value::real(ty, libm::pow(base.as_real()?, exponent))
+            Value::real(ty, mathematics::pow(Native, base.as_real()?, exponent))
         }
         (F::Add, _) => chain(BinaryOperator::Add, arguments),
         (F::Multiply, _) => chain(BinaryOperator::Multiply, arguments),

@@ -287,7 +287,7 @@ impl Checker<'_> {
     }
 
     /// The call, or its value where all its operands are constants.
-    fn called(
+    pub(super) fn called(
         &mut self,
         function: Function,
         arguments: Vec<Expression>,

@@ -19,11 +19,11 @@ use std::time::Instant;
 use rung_runtime::host::{End, Histogram, Statistics};
 use rung_runtime::{Fault, Stopped};
 
-use super::load::Loaded;
 use super::{Failure, Missing, duration, load_checked, print, report, tasks};
 use crate::check::Checked;
 use crate::diagnostic::Code;
 use crate::elementary::Value;
+use crate::load::Loaded;
 use crate::logic::Program;
 use crate::logic::image::Slot;
 use crate::lower::lower;

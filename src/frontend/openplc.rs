@@ -16,7 +16,7 @@ mod variables;
 
 use super::graph::report::Report;
 use super::graph::types::Signatures;
-use super::{Parsed, graph, instances, structured_text};
+use super::{Parsed, graph, instances, located, structured_text};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{Name, Origin, Program, Unit, UnitKind};
 use crate::source::{Source, Span};
@@ -91,13 +91,15 @@ pub fn parse(source: &Source) -> Parsed {
             program.units.push(unit);
         }
     }
+    let mut declared: Vec<&mut Unit> = program.units.iter_mut().collect();
+    located::settle(&mut program.globals, &mut declared).into_iter().for_each(|problem| report.push(problem));
     let signatures = Signatures::new(&program, program.units.iter());
     let mut bodies = Vec::new();
     for (unit, body) in drawn {
         let diagram = diagram::read(body, &mut report);
         let comments = &mut program.comments;
         let (rungs, hidden) =
-            graph::rungs(&diagram, &program.units[unit], body.span(), &signatures, comments, &mut report);
+            graph::rungs(diagram, &program.units[unit], body.span(), &signatures, comments, &mut report);
         bodies.push((unit, rungs, hidden));
     }
     for (unit, text) in written {

@@ -22,7 +22,7 @@ use super::Parsed;
 use super::graph::report::Report;
 use super::graph::types::Signatures;
 use super::structured_text::{self, Scope};
-use super::{graph, instances};
+use super::{events, graph, instances, located};
 use crate::diagnostic::Code;
 use crate::ladder::{Comment, Name, Origin, Program, Rung, Unit, UnitKind, Variable, key};
 use crate::source::{Source, Span};
@@ -64,22 +64,24 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
     if let Some(header) = root.child("contentHeader") {
         program.name = Name::new(header.attribute("name").unwrap_or("plcopen"), header.span());
     }
-    // Most have the POUs among the types, some beside them.
-    let types = root.child("types");
-    let places = || types.into_iter().chain([root]);
+    let places = places(root);
+    let all = |name| places.iter().flat_map(move |place| place.all(name));
     let mut declarations = declarations::Reader::new(report);
-    for declared in places().flat_map(|place| place.all("dataTypes")).flat_map(|types| types.all("dataType")) {
+    for declared in all("dataType") {
         declarations.data_type(declared);
     }
     let mut pous = Vec::new();
-    for node in places().flat_map(|place| place.all("pous")).flat_map(|pous| pous.all("pou")) {
+    for node in all("pou") {
         pous.extend(declarations.pou(node));
     }
-    program.globals = declarations.globals(root);
+    program.globals = declarations.globals(all("globalVars"));
+    let lists = std::mem::take(&mut declarations.lists);
     let (types, comments) = declarations.finish();
     program.types = types;
     program.comments = comments;
-    configuration::read(root, program, report);
+    let mut declared: Vec<&mut Unit> = pous.iter_mut().map(|pou| &mut pou.unit).collect();
+    located::settle(&mut program.globals, &mut declared).into_iter().for_each(|problem| report.push(problem));
+    let events = configuration::read(&places, program, report);
     check_externals(&pous, &program.globals, report);
 
     let signatures = Signatures::new(program, pous.iter().map(|pou| &pou.unit));
@@ -102,7 +104,32 @@ fn project(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
         report.error(Code::BadElement, root.span(), "this project has no program");
     }
     instances::settle(program, report);
+    events::settle(program, events).into_iter().for_each(|problem| report.push(problem));
+    lists.resolve(program);
     program.comments.sort_by_key(|comment| comment.span);
+}
+
+/// The elements in which POUs, types, global variables and resources may stand: most files have them among the types and in
+/// configurations, some beside them, and CODESYS puts all of them into resources.
+fn places<'d, 'a>(root: Node<'d, 'a>) -> Vec<Node<'d, 'a>> {
+    const CONTAINERS: [&str; 9] = [
+        "types",
+        "dataTypes",
+        "pous",
+        "instances",
+        "configurations",
+        "configuration",
+        "resource",
+        "MixedAttrsVarList",
+        "Device",
+    ];
+    let mut places = vec![root];
+    let mut next = 0;
+    while let Some(place) = places.get(next).copied() {
+        places.extend(place.children().filter(|child| CONTAINERS.contains(&child.name())));
+        next += 1;
+    }
+    places
 }
 
 /// The rungs of a POU, and the variables that wires in them need.
@@ -115,8 +142,13 @@ fn body(
 ) -> (Vec<Rung>, Vec<Variable>) {
     let name = &pou.unit.name.text;
     for what in ["actions", "transitions"] {
-        for _ in pou.node.child(what).into_iter().flat_map(Node::children) {
-            report.not_supported(format!("{what} of `{name}`"), pou.node.span());
+        for part in pou.node.child(what).into_iter().flat_map(Node::children) {
+            report.not_supported(format!("{what} of `{name}`"), part.span());
+        }
+    }
+    for (tag, what) in [("Method", "methods"), ("Property", "properties")] {
+        for part in pou.node.all(tag) {
+            report.not_supported(format!("{what} of `{name}`"), part.span());
         }
     }
     let mut rungs = (Vec::new(), Vec::new());
@@ -126,12 +158,11 @@ fn body(
         match language {
             "LD" | "FBD" => {
                 let (more, hidden) = if content.child("rung").is_some() {
-                    (textual::read(content, signatures, report), Vec::new())
+                    let around = textual::Around { unit: &pou.unit, program, signatures };
+                    (textual::read(content, &around, report), Vec::new())
                 } else {
-                    {
-                        let diagram = diagram::read(content, report);
-                        graph::rungs(&diagram, &pou.unit, content.span(), signatures, comments, report)
-                    }
+                    let diagram = diagram::read(content, report);
+                    graph::rungs(diagram, &pou.unit, content.span(), signatures, comments, report)
                 };
                 rungs.0.extend(more);
                 rungs.1.extend(hidden);

@@ -202,6 +202,19 @@ impl StandardBlock {
         self.inputs().iter().position(|pin| pin.name.eq_ignore_ascii_case(name))
     }
 
+    /// How the standard spells an input that some tools call otherwise: `RESET` of a counter is its `R`. `None` where the block has
+    /// an input of that very name, or none that it could be.
+    pub fn input_called(self, name: &str) -> Option<&'static str> {
+        /// Names of the first edition of the standard and of CODESYS, with those of today.
+        const OTHER_NAMES: &[(&str, &str)] =
+            &[("RESET", "R"), ("LOAD", "LD"), ("SET1", "S1"), ("SET", "S"), ("RESET1", "R1")];
+        if self.input(name).is_some() {
+            return None;
+        }
+        let mut others = OTHER_NAMES.iter().filter(|(other, _)| other.eq_ignore_ascii_case(name));
+        others.find_map(|(_, pin)| self.input(pin).map(|place| self.inputs()[place].name))
+    }
+
     /// The place of an output among [`StandardBlock::outputs`], by its name in any case.
     pub fn output(self, name: &str) -> Option<usize> {
         self.outputs().iter().position(|pin| pin.name.eq_ignore_ascii_case(name))

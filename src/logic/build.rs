@@ -71,7 +71,13 @@ impl Builder {
         self.program.instructions[value.index()].ty
     }
 
-    fn push(&mut self, ty: Elementary, op: Op) -> ValueId {
+    /// What makes a value made before.
+    pub(super) fn op(&self, value: ValueId) -> Op {
+        self.program.instructions[value.index()].op
+    }
+
+    /// Any instruction.
+    pub(super) fn push(&mut self, ty: Elementary, op: Op) -> ValueId {
         let value = ValueId(index(self.program.instructions.len()));
         self.program.instructions.push(Instruction { ty, op });
         value
@@ -161,6 +167,11 @@ impl Builder {
     /// `a` as another type.
     pub fn convert(&mut self, a: ValueId, to: Elementary) -> ValueId {
         self.push(to, Op::Convert(a))
+    }
+
+    /// The bits of `a` as another type, which is as wide.
+    pub fn reinterpret(&mut self, a: ValueId, to: Elementary) -> ValueId {
+        self.push(to, Op::Reinterpret(a))
     }
 
     /// A helper of `a` and, where it takes two operands, `b`, which is of the same type.

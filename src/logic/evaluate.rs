@@ -10,6 +10,7 @@ mod tests;
 
 use super::{Binary, Compare, Helper, Unary};
 use crate::elementary::{Elementary, canonical, f32_of};
+use crate::mathematics::{self, Native};
 
 /// The one NaN that arithmetic makes, as a REAL's bits.
 pub const NAN32: u32 = 0x7FC0_0000;
@@ -132,19 +133,19 @@ pub fn call(function: Helper, ty: Elementary, a: u64, b: Option<u64>) -> u64 {
 
 /// What a helper computes, but that a NaN may be any. `b` counts only where it takes two operands.
 ///
-/// Sums, products and square roots in a fixed order, never fused, so that every build gives the same bits.
+/// [`mathematics::program`](super::mathematics::program) is the same as logic.
 pub fn helper(function: Helper, a: f64, b: f64) -> f64 {
     match function {
-        Helper::Ln => libm::log(a),
-        Helper::Log10 => libm::log10(a),
-        Helper::Exp => libm::exp(a),
-        Helper::Sin => libm::sin(a),
-        Helper::Cos => libm::cos(a),
-        Helper::Tan => libm::tan(a),
-        Helper::Asin => libm::asin(a),
-        Helper::Acos => libm::acos(a),
-        Helper::Atan => libm::atan(a),
-        Helper::Power => libm::pow(a, b),
+        Helper::Ln => mathematics::ln(Native, a),
+        Helper::Log10 => mathematics::log10(Native, a),
+        Helper::Exp => mathematics::exp(Native, a),
+        Helper::Sin => mathematics::sin(Native, a),
+        Helper::Cos => mathematics::cos(Native, a),
+        Helper::Tan => mathematics::tan(Native, a),
+        Helper::Asin => mathematics::asin(Native, a),
+        Helper::Acos => mathematics::acos(Native, a),
+        Helper::Atan => mathematics::atan(Native, a),
+        Helper::Power => mathematics::pow(Native, a, b),
     }
 }
 
@@ -165,6 +166,11 @@ pub fn convert(from: Elementary, to: Elementary, a: u64) -> u64 {
         (true, false) => integer_of(to, real_of(from, a).round_ties_even()),
         (false, true) => integer_to_real(from, to, a),
     }
+}
+
+/// The operand's bits as type `to`, which is as wide.
+pub fn reinterpret(to: Elementary, a: u64) -> u64 {
+    canonical(to, a)
 }
 
 fn integer_of(to: Elementary, rounded: f64) -> u64 {

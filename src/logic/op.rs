@@ -55,6 +55,8 @@ pub enum Op {
     Select(ValueId, ValueId, ValueId),
     /// The operand, of any type, as the result's type.
     Convert(ValueId),
+    /// The operand's bits as the result's type, which is as wide.
+    Reinterpret(ValueId),
     /// A pure function of one or two operands of the result's type; the second is there where it takes two.
     Call(Helper, ValueId, Option<ValueId>),
     /// The value of an array's element, counted from 0 by a LINT; where there is none, the type's default.
@@ -79,6 +81,7 @@ impl Op {
             Self::Store(_, a)
             | Self::Unary(_, a)
             | Self::Convert(a)
+            | Self::Reinterpret(a)
             | Self::LoadIndexed(_, a)
             | Self::CopyArray(_, _, a) => [Some(a), None, None],
             Self::Binary(_, a, b) | Self::Compare(_, a, b) | Self::StoreIndexed(_, a, b) => [Some(a), Some(b), None],
@@ -99,6 +102,7 @@ impl Op {
             Self::Compare(op, a, b) => Self::Compare(op, map(a), map(b)),
             Self::Select(a, b, c) => Self::Select(map(a), map(b), map(c)),
             Self::Convert(a) => Self::Convert(map(a)),
+            Self::Reinterpret(a) => Self::Reinterpret(map(a)),
             Self::Call(helper, a, b) => Self::Call(helper, map(a), b.map(map)),
             Self::LoadIndexed(array, a) => Self::LoadIndexed(array, map(a)),
             Self::StoreIndexed(array, a, b) => Self::StoreIndexed(array, map(a), map(b)),

@@ -251,7 +251,7 @@ impl Reader {
         }
         let (unary, binary) = (Unary::from_mnemonic(mnemonic), Binary::from_mnemonic(mnemonic));
         let (compare, helper) = (Compare::from_mnemonic(mnemonic), Helper::from_mnemonic(mnemonic));
-        if !matches!(mnemonic, "const" | "select" | "convert")
+        if !matches!(mnemonic, "const" | "select" | "convert" | "reinterpret")
             && unary.is_none()
             && binary.is_none()
             && compare.is_none()
@@ -280,8 +280,10 @@ impl Reader {
             Op::Call(helper, first, if helper.takes_two() { Some(next()?) } else { None })
         } else if mnemonic == "select" {
             Op::Select(first, next()?, next()?)
-        } else {
+        } else if mnemonic == "convert" {
             Op::Convert(first)
+        } else {
+            Op::Reinterpret(first)
         };
         Ok(Instruction { ty, op })
     }

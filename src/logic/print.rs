@@ -129,6 +129,7 @@ fn instruction(text: &mut String, program: &Program, place: usize) -> fmt::Resul
                 Op::Compare(op, a, b) => writeln!(text, "{} {} {a}, {b}", op.mnemonic(), ty_of(a)),
                 Op::Select(condition, a, b) => writeln!(text, "select {ty} {condition}, {a}, {b}"),
                 Op::Convert(a) => writeln!(text, "convert {ty} {a} ; from {}", ty_of(a)),
+                Op::Reinterpret(a) => writeln!(text, "reinterpret {ty} {a} ; from {}", ty_of(a)),
                 Op::Call(helper, a, None) => writeln!(text, "{} {ty} {a}", helper.mnemonic()),
                 Op::Call(helper, a, Some(b)) => writeln!(text, "{} {ty} {a}, {b}", helper.mnemonic()),
             }

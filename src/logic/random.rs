@@ -193,6 +193,13 @@ impl Generator {
                 let (condition, a, b) = (self.operand(Elementary::Bool), self.operand(ty), self.operand(ty));
                 self.builder.select(condition, a, b)
             }
+            5 if self.rng.random_bool(0.4) => {
+                let as_wide: Vec<Elementary> =
+                    Elementary::ALL.iter().copied().filter(|from| from.bits() == ty.bits()).collect();
+                let from = pick(&mut self.rng, &as_wide);
+                let a = self.operand(from);
+                self.builder.reinterpret(a, ty)
+            }
             5 => {
                 let from = pick(&mut self.rng, &Elementary::ALL);
                 let a = self.operand(from);
@@ -288,6 +295,7 @@ mod tests {
                     Op::Compare(op, a, _) => (op.mnemonic(), ty_of(a)),
                     Op::Select(_, a, _) => ("select", ty_of(a)),
                     Op::Convert(a) => ("convert", ty_of(a)),
+                    Op::Reinterpret(a) => ("reinterpret", ty_of(a)),
                     Op::Call(helper, a, _) => (helper.mnemonic(), ty_of(a)),
                     Op::Load(_) => ("load", instruction.ty),
                     Op::LoadIndexed(..) => ("load_indexed", instruction.ty),
@@ -305,7 +313,8 @@ mod tests {
         expected.extend(Compare::ALL.iter().map(|op| (op.mnemonic(), op.domain())));
         expected.extend(Helper::ALL.iter().map(|helper| (helper.mnemonic(), helper.domain())));
         expected.extend(["load_indexed", "store_indexed", "copy_array"].map(|name| (name, Domain::Any)));
-        expected.extend(["select", "convert", "load", "store", "constant"].map(|name| (name, Domain::Any)));
+        let others = ["select", "convert", "reinterpret", "load", "store", "constant"];
+        expected.extend(others.map(|name| (name, Domain::Any)));
         for (name, domain) in expected {
             for ty in Elementary::ALL.into_iter().filter(|ty| domain.contains(*ty)) {
                 assert!(seen.contains(&(name, ty)), "{name} {ty} never occurs");

@@ -165,6 +165,11 @@ fn instruction(program: &Program, chunk_start: usize, place: usize) -> Result<()
         Op::Compare(_, a, b) => result(Elementary::Bool).and(expect(b, operand(a)?)),
         Op::Select(condition, a, b) => expect(condition, Elementary::Bool).and(expect(a, ty)).and(expect(b, ty)),
         Op::Convert(a) => operand(a).map(|_| ()),
+        Op::Reinterpret(a) => {
+            let from = operand(a)?;
+            let as_wide = from.bits() == ty.bits();
+            if as_wide { Ok(()) } else { Err(format!("{a} is {from}, which is not as wide as {ty}")) }
+        }
         Op::Call(helper, _, b) if b.is_some() != helper.takes_two() => {
             let count = if helper.takes_two() { "two operands" } else { "one operand" };
             Err(format!("{} takes {count}", helper.mnemonic()))
@@ -224,6 +229,9 @@ mod tests {
             (2, int, Op::Binary(Binary::And, v(1), v(1)), "v2: and does not take INT"),
             (2, Elementary::Word, Op::Binary(Binary::ShiftLeft, v(0), v(1)), "v2: v0 is BOOL, but WORD belongs here"),
             (4, Elementary::Bool, Op::Convert(v(3)), "v4: v3 is a store, which has no value"),
+            (4, Elementary::Real, Op::Reinterpret(v(1)), "v4: v1 is INT, which is not as wide as REAL"),
+            (4, Elementary::Byte, Op::Reinterpret(v(0)), "v4: v0 is BOOL, which is not as wide as BYTE"),
+            (4, int, Op::Reinterpret(v(4)), "v4: v4 is used before it is defined"),
             (4, int, Op::Compare(Compare::Less, v(1), v(1)), "v4: the result is INT, but BOOL belongs here"),
             (4, Elementary::Bool, Op::Compare(Compare::Less, v(0), v(1)), "v4: v1 is INT, but BOOL belongs here"),
             (4, int, Op::Select(v(1), v(1), v(1)), "v4: v1 is INT, but BOOL belongs here"),

@@ -29,6 +29,7 @@ pub(super) fn folded(output: &mut Output, arrays: &[Array], instruction: Instruc
         Op::Compare(op, a, b) => u64::from(evaluate::compare(op, output.ty(a), constant(a)?, constant(b)?)),
         Op::Select(condition, a, b) => return Some(Some(if constant(condition)? != 0 { a } else { b })),
         Op::Convert(a) => evaluate::convert(output.ty(a), ty, constant(a)?),
+        Op::Reinterpret(a) => evaluate::reinterpret(ty, constant(a)?),
         Op::Call(helper, a, None) => evaluate::call(helper, ty, constant(a)?, None),
         Op::Call(helper, a, Some(b)) => evaluate::call(helper, ty, constant(a)?, Some(constant(b)?)),
         Op::LoadIndexed(array, index) => match slot(array, constant(index)?) {

@@ -53,6 +53,7 @@ pub(super) fn forward(program: Program) -> Program {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..) => output.keep(instruction),
         }

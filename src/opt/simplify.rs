@@ -23,6 +23,12 @@ fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Optio
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),
         Op::Convert(a) => (output.ty(a) == ty).then_some(a),
+        Op::Reinterpret(a) if output.ty(a) == ty => Some(a),
+        // There and back.
+        Op::Reinterpret(a) => match output.op(a) {
+            Op::Reinterpret(inner) => (output.ty(inner) == ty).then_some(inner),
+            _ => None,
+        },
     }
 }
 

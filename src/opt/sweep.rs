@@ -35,6 +35,7 @@ pub(super) fn sweep(program: Program) -> Program {
                 | Op::Compare(..)
                 | Op::Select(..)
                 | Op::Convert(_)
+                | Op::Reinterpret(_)
                 | Op::Call(..)
                 | Op::LoadIndexed(..) => {}
             }

@@ -49,6 +49,7 @@ fn print(program: &Program) -> String {
             Op::Compare(op, a, b) => format!("v{index} = {} {a} {b}", op.mnemonic()),
             Op::Select(c, a, b) => format!("v{index} = select {c} {a} {b}"),
             Op::Convert(a) => format!("v{index} = {}({a})", instruction.ty),
+            Op::Reinterpret(a) => format!("v{index} = {}'({a})", instruction.ty),
             Op::Call(helper, ..) => {
                 let operands: Vec<String> = instruction.op.operands().map(|operand| operand.to_string()).collect();
                 format!("v{index} = {} {}", helper.mnemonic(), operands.join(" "))

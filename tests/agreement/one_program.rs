@@ -11,33 +11,43 @@ use crate::support::rig::checked;
 use crate::support::same_trace::same_trace;
 use crate::support::shrink;
 
-const FORMATS: [(&str, &str); 3] = [
-    ("native text", include_str!("one_program/station.rung")),
-    ("PLCopen XML", include_str!("one_program/station.xml")),
-    ("Structured Text", include_str!("one_program/station.st")),
-];
+/// The program in every format. The PLCopen file and the OpenPLC project are drawn as their editors save them, and not by Rung.
+fn sources() -> [Source; 4] {
+    let project = [
+        ("station/project.json", include_str!("one_program/project.json")),
+        ("station/pous/programs/station.ld", include_str!("one_program/station.ld")),
+    ];
+    [
+        Source::new("native text", include_str!("one_program/station.rung")),
+        Source::new("PLCopen XML", include_str!("one_program/station.xml")),
+        Source::joined("OpenPLC Editor 4", project.map(|(name, text)| (name.to_owned(), text.to_owned()))),
+        Source::new("Structured Text", include_str!("one_program/station.st")),
+    ]
+}
 
-fn read(name: &str, text: &str) -> Program {
-    let parsed = frontend::parse(&Source::new(name, text));
-    assert_eq!(parsed.diagnostics, [], "{name}");
+fn read(source: &Source) -> Program {
+    let parsed = frontend::parse(source);
+    assert_eq!(parsed.diagnostics, [], "{}", source.name());
     parsed.program
 }
 
 #[test]
 fn one_program_in_every_format_gives_one_trace() {
-    let programs = FORMATS.map(|(name, text)| (name, checked(&read(name, text)).expect("it is sound")));
-    for (name, other) in &programs[1..] {
+    let sources = sources();
+    let programs = sources.each_ref().map(|source| checked(&read(source)).expect("it is sound"));
+    for (source, other) in sources.iter().zip(&programs).skip(1) {
+        let name = source.name();
         for seed in 0..5 {
-            assert_eq!(same_trace(&programs[0].1, other, seed, 1000, |_| true), Ok(()), "{name}");
-            assert_eq!(same_trace(other, &programs[0].1, seed, 1000, |_| true), Ok(()), "{name}");
+            assert_eq!(same_trace(&programs[0], other, seed, 1000, |_| true), Ok(()), "{name}");
+            assert_eq!(same_trace(other, &programs[0], seed, 1000, |_| true), Ok(()), "{name}");
         }
     }
 }
 
 #[test]
 fn each_format_of_one_program_comes_back_from_every_other() {
-    for (name, text) in FORMATS {
-        let program = read(name, text);
+    for source in sources() {
+        let (name, program) = (source.name(), read(&source));
         let checked = checked(&program).expect("it is sound");
         for (format, write) in WRITERS {
             assert_eq!(comes_back(&program, &checked, write), Ok(()), "{name} as {format}");
@@ -84,7 +94,7 @@ fn a_random_program_comes_back_from_plcopen() {
 fn rungs_are_drawn_and_only_what_ld_has_not_is_structured_text() {
     let bodies = |rungs: &str| {
         let text = format!("program p\ninput a, b\noutput c, d\nvar n : INT\nvar t : TON\n{rungs}");
-        let program = read("drawn", &text);
+        let program = read(&Source::new("drawn", text));
         assert!(check(&program).0.is_some(), "{rungs}");
         let written = plcopen::print(&program).expect("it can be written");
         (written.matches("<LD>").count(), written.matches("<ST>").count())

@@ -131,3 +131,48 @@ fn any_namespace_or_prefix_is_read() {
         assert_eq!(native_text(&text), expected, "{text}");
     }
 }
+
+#[test]
+fn an_address_of_a_program_says_what_its_variable_is() {
+    let interface = "<inputVars><variable name='m' address='%MX0.2'><type><BOOL/></type></variable>\
+        <variable name='i' address='%IX0.0'><type><BOOL/></type></variable></inputVars>\
+        <localVars><variable name='a' address='%I*'><type><BOOL/></type></variable>\
+        <variable name='b' address='%Q*'><type><BOOL/></type></variable></localVars>";
+    let globals = "<configuration name='c'><globalVars><variable name='g' address='%Q*'><type><INT/></type></variable>\
+        <variable name='h' address='%QX*'><type><BOOL/></type></variable></globalVars></configuration>";
+    let parsed = parse(&project(&pou("program", "p", interface, &body("a", "b")), globals));
+    assert_eq!(codes(&parsed.diagnostics), ["R0526"]);
+    let printed = rung::frontend::native::print(&parsed.program);
+    let declared: Vec<&str> = printed.lines().filter(|line| line.contains(" : ")).collect();
+    assert_eq!(
+        declared,
+        [
+            "global g : INT at %QW10000",
+            "global h : BOOL at %QX10001.0",
+            "var    m : BOOL at %MX0.2",
+            "input  i : BOOL at %IX0.0",
+            "input  a : BOOL",
+            "output b : BOOL"
+        ]
+    );
+    let block = pou(
+        "functionBlock",
+        "f",
+        "<localVars><variable name='x' address='%I*'><type><BOOL/></type></variable></localVars>",
+        "<LD/>",
+    );
+    assert_eq!(codes(&parse(&project(&block, "")).diagnostics), ["R0209"]);
+}
+
+#[test]
+fn a_program_that_an_event_starts_leaves_unless_it_comes() {
+    let configuration = "<configuration name='c'><resource name='r'><task name='t' priority='1' single='g'>\
+        <pouInstance name='one' typeName='p'/></task><globalVars><variable name='g'><type><BOOL/></type></variable>\
+        </globalVars></resource></configuration>";
+    let text = project(&pou("program", "p", &locals("a b", "BOOL"), &body("a", "b")), configuration);
+    assert_eq!(crate::rungs(&text), ["\"runs at an event\" NOT(IN := [ ^g ]).OUT >> return", "a (b)"]);
+    let hidden = project(&pou("program", "p", &locals("g b", "BOOL"), &body("g", "b")), configuration);
+    assert_eq!(codes(&parse(&hidden).diagnostics), ["R0209"]);
+    let both = text.replace("single=", "interval='T#1s' single=");
+    assert_eq!(codes(&parse(&both).diagnostics), ["R0209"]);
+}

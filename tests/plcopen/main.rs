@@ -1,5 +1,6 @@
 //! The front end for PLCopen XML: every quirk of the format in a small drawing of its own, and hostile files.
 
+mod codesys;
 mod declarations;
 mod drawing;
 mod errors;

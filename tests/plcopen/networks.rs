@@ -494,3 +494,27 @@ fn rungs_may_be_written_out() {
     let text = project(&pou("program", "p", &locals("a b c", "BOOL"), body), "");
     assert_eq!(rungs(&text), ["\"Rung 1: seal\" a /b (S c)", "t:TON(IN := a, PT := T#1s, Q => c)"]);
 }
+
+#[test]
+fn whole_numbers_at_pins_for_durations_count_scans_in_written_out_rungs() {
+    let body = "<LD><rung localId='1'><block typeName='TON' instanceName='t'>\
+        <variable formalParameter='IN'>a</variable><variable formalParameter='PT'>n</variable>\
+        <variable formalParameter='Q'>c</variable><variable formalParameter='ET'>m</variable></block></rung></LD>";
+    let declarations = locals("a c", "BOOL") + &locals("n m", "INT");
+    let task = "<configuration name='x'><resource name='r'><task name='t0' interval='T#20ms'/><pouInstance name='i' typeName='p'/></resource></configuration>";
+    let read = |configuration: &str| {
+        let parsed = parse(&project(&pou("program", "p", &declarations, body), configuration));
+        assert_eq!(crate::codes(&parsed.diagnostics), ["R0527", "R0527"]);
+        assert!(rung::check::check(&parsed.program).0.is_some());
+        let printed = rung::frontend::native::print(&parsed.program);
+        printed.split("\nrung").nth(1).unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(
+        read(task),
+        "t:TON(IN := a, PT := T#20ms * n, Q => c) | {m := LREAL_TO_INT(TIME_TO_LREAL(t.ET) / LREAL#0.02)}"
+    );
+    assert_eq!(
+        read(""),
+        "t:TON(IN := a, PT := T#1ms * n, Q => c) | {m := LREAL_TO_INT(TIME_TO_LREAL(t.ET) / LREAL#0.001)}"
+    );
+}

@@ -2,7 +2,8 @@
 //!
 //! It walks [`Checked`] directly, round by round, and is written from the semantics alone: ladder elements as they
 //! are drawn, timers as machines with three states, no primitive operation anywhere. It must share no code with
-//! `lower`, `logic` or the engines, for it is what they are tested against. It is slow, and may be.
+//! `lower`, `logic` or the engines, for it is what they are tested against; logarithms, powers and angles, of which only
+//! one implementation gives the same bits, it takes from `mathematics` as they do. It is slow, and may be.
 //!
 //! `storage` is what variables are, `place` how one is found; `walk` runs rungs, `call` blocks and functions,
 //! `statement` structured text, `expression` and `function` compute; `block` and what is beside it are the standard

@@ -4,14 +4,14 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Heartbeat, Statistics};
-use crate::{Clock, Controller, Cycle, FieldIo, Scan, Schedule, Stopped, TickSource};
+use crate::{Clock, Cycle, FieldIo, Scan, ScanLoop, Schedule, Stopped, TickSource};
 
 /// A tick source that a thread can wait for.
 pub trait Pace: TickSource {
     /// Waits until the source reads `tick`, or for a short while: whoever waits looks again.
     fn wait(&self, tick: u32);
 
-    /// The moment at which the source read or will read `tick`, in nanoseconds of the controller's clock.
+    /// The moment at which the source read or will read `tick`, in nanoseconds of the scan loop's clock.
     fn moment(&self, tick: u32) -> u64;
 }
 
@@ -47,7 +47,7 @@ pub struct Driver<'a> {
 pub enum End<E> {
     /// It was asked to end, or its time was up. The payload tells whether the outputs are off.
     Asked(Result<(), E>),
-    /// The controller stopped.
+    /// The scan loop stopped.
     Stopped(Stopped<E>),
     /// The watchdog's thread found no heartbeat in time, and has put the outputs off itself.
     NoHeartbeat,
@@ -57,7 +57,7 @@ impl Driver<'_> {
     /// Runs cycles; `after` is called after each, with the image as it went out.
     pub fn run<S, F, T, C>(
         &self,
-        controller: &mut Controller<'_, S, F, T, C>,
+        scan_loop: &mut ScanLoop<'_, S, F, T, C>,
         mut after: impl FnMut(&[u8], Cycle),
     ) -> End<F::Error>
     where
@@ -69,30 +69,30 @@ impl Driver<'_> {
         let mut schedule = Schedule::new(self.cycle);
         let end = loop {
             let due = schedule.due();
-            if !self.await_tick(controller, due) {
-                break if self.heartbeat.tripped() { End::NoHeartbeat } else { End::Asked(controller.stop()) };
+            if !self.await_tick(scan_loop, due) {
+                break if self.heartbeat.tripped() { End::NoHeartbeat } else { End::Asked(scan_loop.stop()) };
             }
-            let began = controller.clock().nanoseconds();
+            let began = scan_loop.clock().nanoseconds();
             self.heartbeat.beat(began.saturating_add(self.watchdog));
-            let at = controller.ticks().latch();
+            let at = scan_loop.ticks().latch();
             let due = schedule.begin(at);
-            let ticks = controller.ticks();
+            let ticks = scan_loop.ticks();
             self.statistics.lateness.record(began.saturating_sub(ticks.source().moment(ticks.raw(due))));
-            let cycle = match controller.cycle() {
+            let cycle = match scan_loop.cycle() {
                 Ok(cycle) => cycle,
                 Err(stopped) => break End::Stopped(stopped),
             };
-            schedule.end(controller.ticks().latch());
+            schedule.end(scan_loop.ticks().latch());
             self.statistics.scan.record(cycle.took);
             self.statistics.note(&schedule);
-            after(controller.image(), cycle);
+            after(scan_loop.image(), cycle);
         };
         self.heartbeat.rest();
         end
     }
 
     /// Waits for a tick; FALSE where the run is to end instead.
-    fn await_tick<S, F, T, C>(&self, controller: &mut Controller<'_, S, F, T, C>, tick: u64) -> bool
+    fn await_tick<S, F, T, C>(&self, scan_loop: &mut ScanLoop<'_, S, F, T, C>, tick: u64) -> bool
     where
         S: Scan,
         F: FieldIo,
@@ -101,7 +101,7 @@ impl Driver<'_> {
     {
         // The run ends on time even where the next cycle would be due only after that.
         let until = self.ends_at.map_or(tick, |end| end.min(tick));
-        let ticks = controller.ticks();
+        let ticks = scan_loop.ticks();
         let raw = ticks.raw(until);
         self.heartbeat.beat(ticks.source().moment(raw).saturating_add(self.watchdog));
         loop {

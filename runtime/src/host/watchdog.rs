@@ -1,6 +1,6 @@
 //! A watchdog for what hangs.
 //!
-//! The controller itself finds a cycle that took too long, once it is over. A field that never answers, a tick
+//! The scan loop itself finds a cycle that took too long, once it is over. A field that never answers, a tick
 //! that never comes or a processor that is never given need another thread: this one. It must depend on nothing
 //! that it watches, and so waits for nothing but time.
 

@@ -16,12 +16,13 @@ use rung_runtime::host::{
     Driver, End, Grant, Heartbeat, MonotonicClock, Panel, PanelIo, Role, Statistics, TickThread, Watchdog, lock_memory,
     schedule_this_thread,
 };
-use rung_runtime::{BadRegions, Controller, Extent, Regions, Scan};
+use rung_runtime::{BadRegions, Scan, ScanLoop};
 
 use super::points::Point;
+use crate::controller::{Aligned, Runs};
 use crate::elementary::Value;
 use crate::logic::Layout;
-use crate::logic::image::{ALIGNMENT, Slot};
+use crate::logic::image::Slot;
 
 /// Changes that wait to be told before more are only counted.
 const MOST_CHANGES: usize = 4096;
@@ -230,8 +231,8 @@ fn scan_thread<E: Scan>(
     };
     let field = PanelIo::new(Arc::clone(&shared.panel));
     let clock = MonotonicClock;
-    let mut controller = Controller::new(&mut engine, field, &ticks, clock, timing.watchdog, regions, image.bytes());
-    let end = driver.run(&mut controller, |image, cycle| {
+    let mut scan_loop = ScanLoop::new(&mut engine, field, &ticks, clock, timing.watchdog, regions, image.bytes_mut());
+    let end = driver.run(&mut scan_loop, |image, cycle| {
         shared.now.store(cycle.now, Ordering::Relaxed);
         if shared.copy_wanted.load(Ordering::Relaxed)
             && let Ok(mut copy) = shared.copy.try_lock()
@@ -241,7 +242,7 @@ fn scan_thread<E: Scan>(
         }
         teller.tell(image, cycle.now, &shared.untold);
     });
-    drop(controller);
+    drop(scan_loop);
     Outcome { end, engine, image: image.bytes().to_vec() }
 }
 
@@ -263,53 +264,6 @@ pub(super) fn input(panel: &Panel, slot: &Slot) -> Value {
 
 fn bad_layout() -> io::Error {
     io::Error::other("the parts of the process image overlap")
-}
-
-/// The runs of a layout, as the runtime takes them.
-#[derive(Debug)]
-struct Runs {
-    inputs: Vec<Extent>,
-    outputs: Vec<std::ops::Range<u32>>,
-    retained: Vec<std::ops::Range<u32>>,
-    size: u32,
-}
-
-impl Runs {
-    fn new(layout: &Layout) -> Self {
-        let inputs = layout.inputs().iter();
-        Self {
-            inputs: inputs.map(|run| Extent { bytes: run.bytes.clone(), bools: run.bools.clone() }).collect(),
-            outputs: layout.outputs().to_vec(),
-            retained: layout.retained().to_vec(),
-            size: layout.size(),
-        }
-    }
-
-    fn regions(&self) -> Result<Regions<'_>, BadRegions> {
-        Regions::new(&self.inputs, &self.outputs, &self.retained, self.size)
-    }
-}
-
-/// An image whose first byte is aligned as engines want it.
-#[derive(Debug)]
-struct Aligned {
-    bytes: Vec<u8>,
-    start: usize,
-    size: usize,
-}
-
-impl Aligned {
-    fn new(image: &[u8]) -> Self {
-        let alignment = ALIGNMENT as usize;
-        let mut bytes = vec![0; image.len() + alignment];
-        let start = bytes.as_ptr().align_offset(alignment).min(alignment);
-        bytes[start..start + image.len()].copy_from_slice(image);
-        Self { bytes, start, size: image.len() }
-    }
-
-    fn bytes(&mut self) -> &mut [u8] {
-        &mut self.bytes[self.start..self.start + self.size]
-    }
 }
 
 /// Tells of variables that change.

@@ -102,6 +102,12 @@ impl Lowering<'_, '_> {
         }
     }
 
+    /// The bits of a value as another type, which is as wide: only the way to extend those of a narrow one can differ.
+    pub(super) fn reinterpret(&mut self, a: ValueId, to: Elementary) -> Value {
+        let value = self.value(a);
+        if to == Elementary::Bool { value } else { self.canonical(to, value) }
+    }
+
     /// All ones where a signed value is negative, else zero.
     fn sign_mask(&mut self, ty: Elementary, value: Value) -> Value {
         self.builder.ins().sshr_imm_u(value, i64::from(holder(ty).bits()) - 1)

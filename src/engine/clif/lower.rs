@@ -137,6 +137,7 @@ impl Lowering<'_, '_> {
                 self.choose(condition, a, b)
             }
             Op::Convert(a) => self.convert(a, ty),
+            Op::Reinterpret(a) => self.reinterpret(a, ty),
             Op::Call(helper, a, b) => self.call(helper, ty, a, b),
             Op::LoadIndexed(array, index) => self.load_indexed(array, index),
             Op::StoreIndexed(array, index, a) => return self.store_indexed(array, index, a),
@@ -182,6 +183,7 @@ impl Lowering<'_, '_> {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
             | Op::StoreIndexed(..)
@@ -231,6 +233,7 @@ impl Lowering<'_, '_> {
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
             | Op::StoreIndexed(..)

@@ -63,6 +63,7 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
             | Op::Compare(..)
             | Op::Select(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..) => [None, None],
         })
         .flatten()

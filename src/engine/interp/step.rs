@@ -51,7 +51,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// The step for an instruction whose first operand has type `of`, and whether its first two operands change places;
-    /// `None` for a load, a store and what has no operand.
+    /// `None` for what makes no step or is made into one elsewhere.
     pub(super) fn of(instruction: Instruction, of: Elementary) -> Option<(Self, bool)> {
         let wide = matches!(of, Elementary::Lint | Elementary::Time);
         let kind = match instruction.op {
@@ -59,6 +59,7 @@ impl Kind {
             | Op::Now
             | Op::Load(_)
             | Op::Store(..)
+            | Op::Reinterpret(_)
             | Op::LoadIndexed(..)
             | Op::StoreIndexed(..)
             | Op::CopyArray(..) => return None,

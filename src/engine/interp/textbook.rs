@@ -92,6 +92,7 @@ impl Textbook {
                 Op::Compare(op, a, b) => u64::from(evaluate::compare(op, ty_of(a), of(a), of(b))),
                 Op::Select(condition, a, b) => of(if of(condition) != 0 { a } else { b }),
                 Op::Convert(a) => evaluate::convert(ty_of(a), ty, of(a)),
+                Op::Reinterpret(a) => evaluate::reinterpret(ty, of(a)),
                 Op::Call(helper, a, b) => evaluate::call(helper, ty, of(a), b.map(of)),
             };
         }

@@ -153,6 +153,8 @@ impl<'a> Translator<'a> {
             Op::Constant(bits) => self.set(value, Function::cell(self.constants[&(instruction.ty.size(), bits)])),
             Op::Now => self.set(value, Function::cell(self.program.layout.size())),
             Op::Load(slot) => self.set(value, Function::cell(self.program.layout.slot(slot).offset)),
+            // The same bytes, and so the same cell.
+            Op::Reinterpret(a) => self.set(value, self.values[a.index()]),
             Op::LoadIndexed(array, place) => self.load_indexed(value, array, place),
             op => match boolean(self.program, instruction) {
                 Some(of) => {

@@ -34,6 +34,7 @@ fn needed(program: &Program, Instruction { ty, op }: Instruction) -> Floats {
         | Op::Now
         | Op::Load(_)
         | Op::Store(..)
+        | Op::Reinterpret(_)
         | Op::Select(..)
         | Op::LoadIndexed(..)
         | Op::StoreIndexed(..)

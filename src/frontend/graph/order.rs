@@ -1,8 +1,8 @@
 //! What runs when: elements that take power or values run in one order, and each first pulls what it needs.
 //!
 //! Elements with an `executionOrderId` above 0 come first, by it; then coils, variables that are written, jumps and blocks
-//! that nothing reads, by their places: from top to bottom in steps of ten units, from left to right. A block that is
-//! reached again while it is pulled is read as it was left by the scan before.
+//! that nothing reads, by their places: from top to bottom in steps of ten units, from left to right; of those at one place (some
+//! tools write none) by their numbers. A block that is reached again while it is pulled is read as it was left by the scan before.
 
 use super::diagram::{Diagram, ItemKind, Source};
 use super::report::Report;

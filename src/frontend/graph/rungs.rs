@@ -5,9 +5,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::diagram::{Diagram, ItemKind, Source};
+use super::diagram::{Diagram, Item, ItemKind, Source};
 use super::network::{self, Vertex};
 use super::order::{self, Order, sources};
+use super::pins;
 use super::report::Report;
 use super::types::{Scope, Signatures};
 use super::vertices::{Builder, value_of};
@@ -20,13 +21,15 @@ const LONGEST_TITLE: usize = 100;
 /// The rungs of a diagram that is the body of a unit, and the variables that wires in it need. Comments that become no titles
 /// are added to `comments`, at the place of the body.
 pub(in crate::frontend) fn rungs(
-    diagram: &Diagram,
+    mut diagram: Diagram,
     unit: &Unit,
     body: Span,
     signatures: &Signatures,
     comments: &mut Vec<Comment>,
     report: &mut Report,
 ) -> (Vec<Rung>, Vec<Variable>) {
+    pins::name(&mut diagram, signatures);
+    let diagram = &diagram;
     let order = order::order(diagram, report);
     let scope = Scope::new(signatures, unit);
     let mut builder = Builder::new(diagram, &order, &scope, report);
@@ -58,6 +61,11 @@ impl Placed {
         Self { rung: Rung { name: None, title: None, enabled: true, circuit, span }, top, bottom, left }
     }
 
+    /// Whether it and an element are drawn at one and the same place, as if there were no places.
+    fn is_at(&self, item: &Item) -> bool {
+        self.top == item.y && self.bottom == item.y && self.left == item.x
+    }
+
     /// A rung with nothing but a name.
     fn empty(name: Name, y: i64) -> Self {
         let span = name.span;
@@ -67,11 +75,16 @@ impl Placed {
     }
 }
 
-/// A label names the first rung that is not wholly above it.
+/// A label names the first rung that is not wholly above it. Where a tool writes no places, all have the same, and it names the
+/// first rung behind it in the file.
 fn label(diagram: &Diagram, rungs: &mut Vec<Placed>) {
     for item in &diagram.items {
         let ItemKind::Label(name) = &item.kind else { continue };
-        let place = rungs.iter().position(|placed| placed.bottom >= item.y).unwrap_or(rungs.len());
+        let is_named = |placed: &Placed| match placed.is_at(item) {
+            true => placed.rung.span.start >= item.span.start,
+            false => placed.bottom >= item.y,
+        };
+        let place = rungs.iter().position(is_named).unwrap_or(rungs.len());
         match rungs.get_mut(place) {
             Some(placed) if placed.rung.name.is_none() => placed.rung.name = Some(name.clone()),
             _ => rungs.insert(place, Placed::empty(name.clone(), item.y)),
@@ -81,24 +94,72 @@ fn label(diagram: &Diagram, rungs: &mut Vec<Placed>) {
 
 /// A short comment is the title of the rung that it stands beside or above; others are kept before the rungs.
 fn title(diagram: &Diagram, rungs: &mut [Placed], body: Span, comments: &mut Vec<Comment>) {
-    // Positions are any numbers that a file has; differences of these cannot overflow.
+    let near = Near::new(rungs);
     for item in &diagram.items {
         let ItemKind::Comment(text) = &item.kind else { continue };
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
         if line.is_empty() {
             continue;
         }
-        // The nearest, of those as near the one to the right of it.
-        let away = |placed: &Placed| {
-            let up_or_down = (placed.top - item.y).max(item.y - placed.bottom).max(0);
-            (up_or_down, (placed.left - item.x).abs())
-        };
-        match rungs.iter_mut().min_by_key(|placed| away(placed)) {
+        match near.find(rungs, item).and_then(|place| rungs.get_mut(place)) {
             Some(placed) if placed.rung.title.is_none() && line.chars().count() <= LONGEST_TITLE => {
                 placed.rung.title = Some(line);
             }
             _ => comments.push(Comment { text: text.clone(), span: body, own_line: true }),
         }
+    }
+}
+
+/// Finds the rung that is nearest to a place, without looking at all of them.
+struct Near {
+    /// The rungs by their tops.
+    by_top: Vec<usize>,
+    /// The lowest bottom of each and those before it.
+    lowest: Vec<i64>,
+}
+
+impl Near {
+    fn new(rungs: &[Placed]) -> Self {
+        let mut by_top: Vec<usize> = (0..rungs.len()).collect();
+        by_top.sort_by_key(|place| rungs[*place].top);
+        let mut bottom = i64::MIN;
+        let lowest = by_top.iter().map(|place| {
+            bottom = bottom.max(rungs[*place].bottom);
+            bottom
+        });
+        Self { lowest: lowest.collect(), by_top }
+    }
+
+    /// The nearest above or below; of those as near the one that is nearest to the right or left, and rather below than above; of
+    /// those at one place the first behind it in the file.
+    fn find(&self, rungs: &[Placed], item: &Item) -> Option<usize> {
+        // Positions are any numbers that a file has; differences of these cannot overflow.
+        let away = |place: usize| {
+            let placed = &rungs[place];
+            let up_or_down = (placed.top - item.y).max(item.y - placed.bottom).max(0);
+            let before = match placed.is_at(item) {
+                true => placed.rung.span.start < item.span.start,
+                false => placed.bottom < item.y,
+            };
+            (up_or_down, (placed.left - item.x).abs(), before, place)
+        };
+        let mut best: Option<(i64, i64, bool, usize)> = None;
+        let from = self.by_top.partition_point(|place| rungs[*place].top <= item.y);
+        for at in (0..from).rev() {
+            if best.is_some_and(|best| item.y - self.lowest[at] > best.0) {
+                break;
+            }
+            let found = away(self.by_top[at]);
+            best = Some(best.map_or(found, |best| best.min(found)));
+        }
+        for place in &self.by_top[from..] {
+            let found = away(*place);
+            if best.is_some_and(|best| found.0 > best.0) {
+                break;
+            }
+            best = Some(best.map_or(found, |best| best.min(found)));
+        }
+        best.map(|best| best.3)
     }
 }
 

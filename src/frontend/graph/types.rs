@@ -87,6 +87,12 @@ impl Signatures {
             && (StandardBlock::from_name(name).is_some() || Function::from_name(name).is_some())
     }
 
+    /// Whether a function of the file declares an output of that name besides its result.
+    pub(in crate::frontend) fn has_output(&self, function: &str, pin: &str) -> bool {
+        let unit = self.units.get(&key(function));
+        unit.is_some_and(|unit| unit.outputs.iter().any(|(name, _)| name.text.eq_ignore_ascii_case(pin)))
+    }
+
     /// Whether anything declares a block of that name; an unknown one may have any pins.
     pub(in crate::frontend) fn is_known_block(&self, name: &str) -> bool {
         self.units.get(&key(name)).map_or_else(|| StandardBlock::from_name(name).is_some(), |unit| !unit.function)

@@ -8,6 +8,7 @@ use crate::diagnostic::Code;
 use crate::elementary::Elementary;
 use crate::frontend::graph::expression::{self, Fault};
 use crate::frontend::graph::report::Report;
+use crate::frontend::located;
 use crate::ladder::{Dimension, Expression, ExpressionKind, Literal, Name, TypeReference, Variable, VariableClass};
 
 /// The name of something that has to have one.
@@ -44,6 +45,7 @@ pub(super) fn variable(value: Value<'_>, report: &mut Report) -> Option<(Variabl
     let ty = type_of(value, &name, report)?;
     let address = value.text_of("location").and_then(|text| match expression::address(text.trim(), span) {
         Ok(address) => Some(address),
+        Err(_) if text.trim_end().ends_with('*') => located::open(text.trim(), span),
         Err(Fault::Bad(message)) => {
             report.error(Code::BadAddress, span, message);
             None

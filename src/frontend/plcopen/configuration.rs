@@ -3,50 +3,49 @@
 use super::Report;
 use super::xml::Node;
 use crate::diagnostic::Code;
+use crate::frontend::events::Event;
 use crate::frontend::graph::expression;
 use crate::ladder::{Expression, ExpressionKind, Literal, Name, Program, ProgramInstance, Task};
 use crate::source::Span;
 
-/// The configurations of a project.
-pub(super) fn configurations<'d, 'a>(root: Node<'d, 'a>) -> impl Iterator<Item = Node<'d, 'a>> {
-    root.all("instances").flat_map(|instances| instances.all("configurations")).flat_map(|all| all.all("configuration"))
-}
-
-/// Reads tasks and program instances.
-pub(super) fn read(root: Node<'_, '_>, program: &mut Program, report: &mut Report) {
-    for configuration in configurations(root) {
+/// Reads tasks and program instances; gives the tasks that an event starts.
+pub(super) fn read(places: &[Node<'_, '_>], program: &mut Program, report: &mut Report) -> Vec<Event> {
+    let mut events = Vec::new();
+    for place in places {
         for what in ["accessVars", "configVars"] {
-            for list in configuration.all(what).filter(|list| list.children().next().is_some()) {
+            for list in place.all(what).filter(|list| list.children().next().is_some()) {
                 report.not_supported(format!("`{what}` of a configuration"), list.span());
             }
         }
-        for resource in configuration.all("resource") {
-            for task in resource.all("task") {
-                let Some(name) = task.attribute("name") else {
-                    report.error(Code::BadElement, task.span(), "this `<task>` has no name");
-                    continue;
-                };
-                let name = Name::new(name, task.span());
-                let interval = task.attribute("interval").and_then(|text| interval(text, task.span(), report));
-                let priority = task.attribute("priority").map(|text| expression::expression(text, task.span()));
-                let priority = priority.and_then(|priority| report.read(priority, task.span()));
-                if task.attribute("single").is_some() {
-                    report.not_supported("task that an event starts", task.span());
-                }
-                program.tasks.push(Task { name: name.clone(), interval, priority, span: task.span() });
-                for instance in task.all("pouInstance") {
-                    program.instances.extend(self::instance(instance, Some(&name), report));
-                }
+        for task in place.all("task") {
+            let Some(name) = task.attribute("name") else {
+                report.error(Code::BadElement, task.span(), "this `<task>` has no name");
+                continue;
+            };
+            let name = Name::new(name, task.span());
+            let interval = task.attribute("interval").and_then(|text| interval(text, task.span(), report));
+            let priority = task.attribute("priority").map(|text| expression::expression(text, task.span()));
+            let priority = priority.and_then(|priority| report.read(priority, task.span()));
+            if let Some(trigger) = task.attribute("single") {
+                let trigger = report.read(expression::expression(trigger, task.span()), task.span());
+                events.extend(trigger.map(|trigger| Event { task: name.clone(), trigger, span: task.span() }));
             }
-            for instance in resource.all("pouInstance") {
-                program.instances.extend(self::instance(instance, None, report));
+            program.tasks.push(Task { name: name.clone(), interval, priority, span: task.span() });
+            for instance in task.all("pouInstance") {
+                program.instances.extend(self::instance(instance, Some(&name), report));
             }
         }
+        for instance in place.all("pouInstance") {
+            program.instances.extend(self::instance(instance, None, report));
+        }
     }
+    events
 }
 
+/// CODESYS names the program alone, which is its own only instance.
 fn instance(node: Node<'_, '_>, task: Option<&Name>, report: &mut Report) -> Option<ProgramInstance> {
-    let (Some(name), Some(program)) = (node.attribute("name"), node.attribute("typeName")) else {
+    let (name, program) = (node.attribute("name"), node.attribute("typeName"));
+    let (Some(name), Some(program)) = (name.or(program), program.or(name)) else {
         report.error(Code::BadElement, node.span(), "this `<pouInstance>` has no name or no typeName");
         return None;
     };

@@ -6,7 +6,9 @@ use super::xml::Node;
 use super::{Pou, Report};
 use crate::diagnostic::Code;
 use crate::elementary::Elementary;
+use crate::frontend::global_lists::GlobalLists;
 use crate::frontend::graph::expression::{self, Fault};
+use crate::frontend::located;
 use crate::ladder::{
     ArrayItem, Comment, Dimension, Expression, ExpressionKind, Field, Literal, MemberValue, Name, TypeDeclaration,
     TypeKind, TypeReference, Unit, UnitKind, Variable, VariableClass,
@@ -18,11 +20,13 @@ pub(super) struct Reader<'r> {
     report: &'r mut Report,
     types: Vec<TypeDeclaration>,
     comments: Vec<Comment>,
+    /// The lists of global variables that have names of their own.
+    pub(super) lists: GlobalLists,
 }
 
 impl<'r> Reader<'r> {
     pub(super) fn new(report: &'r mut Report) -> Self {
-        Self { report, types: Vec::new(), comments: Vec::new() }
+        Self { report, types: Vec::new(), comments: Vec::new(), lists: GlobalLists::default() }
     }
 
     /// The types and comments that were read.
@@ -200,12 +204,9 @@ impl<'r> Reader<'r> {
         for node in list.all("variable") {
             let Some(name) = self.named(node) else { continue };
             let ty = self.declared_type(node, &name);
-            let address = node.attribute("address").filter(|address| !address.ends_with('*'));
-            if node.attribute("address").is_some() && address.is_none() {
-                self.report.not_supported("address that a configuration fills in", node.span());
-            }
-            let address = address.and_then(|text| match expression::address(text, node.span()) {
+            let address = node.attribute("address").and_then(|text| match expression::address(text, node.span()) {
                 Ok(address) => Some(address),
+                Err(_) if text.ends_with('*') => located::open(text, node.span()),
                 Err(Fault::Bad(message)) => {
                     self.report.error(Code::BadAddress, node.span(), message);
                     None
@@ -231,13 +232,14 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// The global variables of all configurations and resources.
-    pub(super) fn globals(&mut self, root: Node<'_, '_>) -> Vec<Variable> {
+    /// The global variables of all lists, each once.
+    pub(super) fn globals<'d, 'a: 'd>(&mut self, lists: impl Iterator<Item = Node<'d, 'a>>) -> Vec<Variable> {
         let mut globals = Vec::new();
-        for configuration in super::configuration::configurations(root) {
-            let resources = configuration.all("resource");
-            for list in resources.chain([configuration]).flat_map(|place| place.all("globalVars")) {
-                self.variables(list, VariableClass::Memory, &mut globals);
+        for list in lists {
+            let first = globals.len();
+            self.variables(list, VariableClass::Memory, &mut globals);
+            if let Some(name) = list.attribute("name") {
+                self.lists.add(name, &globals[first..]);
             }
         }
         globals

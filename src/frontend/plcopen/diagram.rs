@@ -9,7 +9,7 @@ use crate::frontend::graph::diagram::{
 };
 use crate::frontend::graph::expression;
 use crate::frontend::graph::report::Report;
-use crate::ladder::{Expression, ExpressionKind, Name};
+use crate::ladder::{Expression, ExpressionKind, Name, Reference};
 use crate::source::Span;
 
 /// A wire as written.
@@ -49,6 +49,7 @@ pub(super) fn read(body: Node<'_, '_>, report: &mut Report) -> Diagram {
         connectors: HashMap::new(),
         wires: Vec::new(),
         values: Vec::new(),
+        taken: Vec::new(),
     };
     for node in body.children() {
         reader.element(node);
@@ -73,6 +74,8 @@ struct Reader<'r> {
     wires: Vec<Pending>,
     /// Values that are written at pins.
     values: Vec<(Expression, Span)>,
+    /// Variables that are written at outputs of the box that is read, each with the place of the output.
+    taken: Vec<(usize, Reference, Span)>,
 }
 
 fn number(node: Node<'_, '_>, name: &str) -> Option<i64> {
@@ -111,8 +114,10 @@ impl Reader<'_> {
                 | "comment"
         );
         if !known {
-            if !matches!(node.name(), "vendorElement" | "documentation" | "worksheet") {
-                self.report.not_supported(format!("element `<{}>`", node.name()), span);
+            match node.name() {
+                "vendorElement" => self.vendor_element(node),
+                "documentation" | "worksheet" => {}
+                name => self.report.not_supported(format!("element `<{name}>`"), span),
             }
             return;
         }
@@ -140,7 +145,27 @@ impl Reader<'_> {
         let position = node.child("position");
         let at = |name: &str| position.and_then(|position| number(position, name)).unwrap_or(0);
         let order = node.attribute("executionOrderId").and_then(|order| order.parse().ok()).unwrap_or(0);
-        self.diagram.items.push(Item { id, span, x: at("x"), y: at("y"), order, kind });
+        let (x, y) = (at("x"), at("y"));
+        self.diagram.items.push(Item { id, span, x, y, order, kind });
+        // They take their values where the box stands, right behind it.
+        for (output, target, span) in std::mem::take(&mut self.taken) {
+            let inputs = vec![Source::Output(item, output)];
+            let modifier = Modifier::default();
+            let kind = ItemKind::Coil(Coil { target, modifier, storage: None, inputs, variable: true, value: None });
+            self.diagram.items.push(Item { id, span, x, y, order, kind });
+        }
+    }
+
+    /// What a tool draws beyond the standard: the title of a network is a comment, other things show but do nothing.
+    fn vendor_element(&mut self, node: Node<'_, '_>) {
+        let is_title = node.child("ElementType").is_some_and(|ty| ty.text().eq_ignore_ascii_case("networktitle"));
+        let title = node.child("alternativeText").filter(|_| is_title).map(Node::whole_text);
+        if let Some(title) = title.filter(|title| !title.is_empty()) {
+            let position = node.child("position");
+            let at = |name: &str| position.and_then(|position| number(position, name)).unwrap_or(0);
+            let kind = ItemKind::Comment(title);
+            self.diagram.items.push(Item { id: 0, span: node.span(), x: at("x"), y: at("y"), order: 0, kind });
+        }
     }
 
     fn kind(&mut self, node: Node<'_, '_>, item: usize) -> Option<ItemKind> {
@@ -237,7 +262,8 @@ impl Reader<'_> {
                 let name = Name::new(pin.attribute("formalParameter").unwrap_or("IN"), pin.span());
                 let point = pin.child("connectionPointIn");
                 let mut wires: Vec<Wire> = point.into_iter().flat_map(wires).collect();
-                if let Some(text) = point.and_then(|point| point.child("expression")).map(Node::text) {
+                let text = point.and_then(|point| point.child("expression")).map(Node::text);
+                if let Some(text) = text.filter(|text| !text.is_empty()) {
                     let value = self.report.read(expression::expression(text, pin.span()), pin.span());
                     wires.extend(value.map(|value| self.value(value, pin.span())));
                 }
@@ -245,12 +271,22 @@ impl Reader<'_> {
                 inputs.push(InputPin { name, modifier: modifier(pin), in_out, sources: Vec::new() });
             }
         }
-        let outputs = node.all("outputVariables").flat_map(|list| list.all("variable"));
-        let outputs = outputs.map(|pin| OutputPin {
-            name: Name::new(pin.attribute("formalParameter").unwrap_or("OUT"), pin.span()),
-            negated: pin.flag("negated"),
-        });
-        Some(Block { type_name: Name::new(type_name, span), instance, inputs, outputs: outputs.collect() })
+        let mut outputs = Vec::new();
+        self.taken.clear();
+        for pin in node.all("outputVariables").flat_map(|list| list.all("variable")) {
+            let name = Name::new(pin.attribute("formalParameter").unwrap_or("OUT"), pin.span());
+            // CODESYS writes what takes an output at the pin itself.
+            let target = pin.child("connectionPointOut").and_then(|point| point.child("expression")).map(Node::text);
+            if let Some(target) = target.filter(|target| !target.is_empty()) {
+                let target = self.report.read(expression::reference(target, pin.span()), pin.span());
+                self.taken.extend(target.map(|target| (outputs.len(), target, pin.span())));
+            }
+            outputs.push(OutputPin { name, negated: pin.flag("negated") });
+        }
+        if node.child("STCode").is_some() {
+            self.report.not_supported("box with structured text in it", span);
+        }
+        Some(Block { type_name: Name::new(type_name, span), instance, inputs, outputs })
     }
 
     /// A wire from a value that is written at the pin itself.

@@ -2,7 +2,8 @@
 //!
 //! It must stay within bounded memory and time whatever the text: nesting, elements and attributes are limited, there
 //! are no entities but XML's own five, and a document type is refused. What no reader of PLCopen files looks at
-//! (corners of wires, tools' own data) is not kept.
+//! (corners of wires, most of tools' own data) is not kept. What a tool keeps in `<addData>` that the standard has a place
+//! for elsewhere (CODESYS keeps whole applications there) stands in the tree as if it were in the element itself.
 
 use std::borrow::Cow;
 
@@ -22,16 +23,35 @@ const MOST_ATTRIBUTES: usize = 1 << 22;
 /// How many attributes one element may have; TC6 needs ten.
 const MOST_OF_ONE: usize = 64;
 
-/// No element.
+/// No element, no text.
 const NONE: u32 = u32::MAX;
+
+/// The data of tools, by the last part of their names, whose content is read as if it were outside of `<addData>`.
+const READ_DATA: &[&str] = &[
+    "action",
+    "application",
+    "datatype",
+    "device",
+    "fbdelementtype",
+    "globalvars",
+    "method",
+    "mixedattrsvarlist",
+    "plclogic",
+    "pou",
+    "property",
+    "resource",
+    "stcode",
+];
 
 /// The tree.
 #[derive(Default)]
 pub(super) struct Document<'a> {
     elements: Vec<Data<'a>>,
     attributes: Vec<(&'a str, Cow<'a, str>)>,
+    texts: Vec<Text<'a>>,
 }
 
+/// An element; there are many, so that it is kept small.
 struct Data<'a> {
     /// Empty for a comment.
     name: &'a str,
@@ -40,9 +60,14 @@ struct Data<'a> {
     first_child: u32,
     last_child: u32,
     next: u32,
+    /// Its place among the texts.
+    text: u32,
+}
+
+struct Text<'a> {
     text: Cow<'a, str>,
-    text_span: Span,
-    /// Where its text stands in the file as it is, without anything escaped.
+    span: Span,
+    /// Where it stands in the file as it is, without anything escaped.
     verbatim: Option<usize>,
 }
 
@@ -107,14 +132,18 @@ impl<'d, 'a> Node<'d, 'a> {
 
     /// Its own text without blanks around it.
     pub(super) fn text(self) -> &'d str {
-        self.data().text.trim()
+        self.text_data().map_or("", |data| data.text.trim())
+    }
+
+    fn text_data(self) -> Option<&'d Text<'a>> {
+        self.document.texts.get(self.data().text as usize)
     }
 
     /// Where in the file what a span of its [`Node::text`] shows stands; all of the text where parts of it are escaped.
     pub(super) fn place(self, span: Span) -> Span {
-        let data = self.data();
+        let Some(data) = self.text_data() else { return self.span() };
         let blanks = data.text.len() - data.text.trim_start().len();
-        data.verbatim.map_or(data.text_span, |start| {
+        data.verbatim.map_or(data.span, |start| {
             let at = |place: u32| start + blanks + place as usize;
             Span::new(at(span.start), at(span.end))
         })
@@ -157,7 +186,12 @@ impl<'a> Document<'a> {
     /// # Errors
     /// At the first place where it is not well formed or beyond a limit.
     pub(super) fn read(text: &'a str) -> Result<Self, Diagnostic> {
-        Reading { document: Self::default(), open: Vec::new(), skipped: 0, rooted: false, text }.read()
+        let mut document = Self::default();
+        // About as many as drawings have; memory stays a small multiple of the file.
+        document.elements.reserve((text.len() / 128).min(MOST_ELEMENTS));
+        document.attributes.reserve((text.len() / 128).min(MOST_ATTRIBUTES));
+        document.texts.reserve((text.len() / 512).min(MOST_ELEMENTS));
+        Reading { document, open: Vec::new(), skipped: 0, rooted: false, text }.read()
     }
 }
 
@@ -209,10 +243,8 @@ impl<'a> Reading<'a> {
                 Ok(Event::Comment(text)) if self.skipped == 0 => {
                     let text = text.into_inner();
                     self.add("", span, (0, 0))?;
-                    if let Some(data) = self.document.elements.last_mut() {
-                        data.text = text;
-                        data.text_span = span;
-                    }
+                    let last = self.document.elements.len() - 1;
+                    self.set_text(last, Text { text, span, verbatim: None });
                 }
                 Ok(Event::DocType(_)) => {
                     let problem = malformed(span, "a document type is not read".to_owned());
@@ -244,8 +276,17 @@ impl<'a> Reading<'a> {
         let name = name.rsplit_once(':').map_or(name, |(_, local)| local);
         let in_connection =
             self.open.last().is_some_and(|open| self.document.elements[*open as usize].name == "connection");
-        if self.skipped > 0 || matches!(name, "relPosition" | "addData") || in_connection && name == "position" {
+        if self.skipped > 0 || name == "relPosition" || in_connection && name == "position" {
             self.skipped += 1;
+            return Ok(());
+        }
+        if let (true, Some(around)) = (name == "addData" || name == "data", self.open.last().copied()) {
+            // Both are open, but what is in them belongs to the element around them.
+            if name == "addData" || is_read_data(tag) {
+                self.open.push(around);
+            } else {
+                self.skipped += 1;
+            }
             return Ok(());
         }
         if self.open.is_empty() && self.rooted {
@@ -312,10 +353,7 @@ impl<'a> Reading<'a> {
             return Err(too_large(span, format!("this file has more than {MOST_ELEMENTS} elements")));
         }
         let index = u32::try_from(index).unwrap_or(NONE);
-        let (text, text_span) = (Cow::Borrowed(""), Span::default());
-        let verbatim = None;
-        let data =
-            Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text, text_span, verbatim };
+        let data = Data { name, span, attributes, first_child: NONE, last_child: NONE, next: NONE, text: NONE };
         self.document.elements.push(data);
         if let Some(parent) = self.open.last().copied() {
             let elements = &mut self.document.elements;
@@ -331,27 +369,45 @@ impl<'a> Reading<'a> {
 
     /// Adds to the text of the open element; `verbatim` is where it starts in the file if nothing in it is escaped.
     fn add_text(&mut self, text: Cow<'a, str>, span: Span, verbatim: Option<usize>) -> Result<(), Diagnostic> {
-        let blank = text.trim().is_empty();
         if self.skipped > 0 {
             return Ok(());
         }
+        let blank = text.trim_start().is_empty();
         let Some(open) = self.open.last() else {
             return if blank { Ok(()) } else { Err(malformed(span, "text stands outside of the elements".to_owned())) };
         };
-        let data = &mut self.document.elements[*open as usize];
-        if data.text.is_empty() {
-            if !blank {
-                data.verbatim = verbatim.filter(|_| matches!(text, Cow::Borrowed(_)));
-                data.text = text;
-                data.text_span = span;
+        let open = *open as usize;
+        let place = self.document.elements[open].text;
+        match self.document.texts.get_mut(place as usize) {
+            Some(before) => {
+                before.verbatim = None;
+                before.text.to_mut().push_str(&text);
+                before.span = before.span.to(span);
             }
-        } else {
-            data.verbatim = None;
-            data.text.to_mut().push_str(&text);
-            data.text_span = data.text_span.to(span);
+            None if blank => {}
+            None => {
+                let verbatim = verbatim.filter(|_| matches!(text, Cow::Borrowed(_)));
+                self.set_text(open, Text { text, span, verbatim });
+            }
         }
         Ok(())
     }
+
+    fn set_text(&mut self, element: usize, text: Text<'a>) {
+        // There are no more texts than elements.
+        self.document.elements[element].text = u32::try_from(self.document.texts.len()).unwrap_or(NONE);
+        self.document.texts.push(text);
+    }
+}
+
+/// Whether a `<data>` of a tool holds what the standard has elsewhere.
+fn is_read_data(tag: &BytesStart<'_>) -> bool {
+    let name = tag.try_get_attribute("name").ok().flatten();
+    name.is_some_and(|name| {
+        let name = name.value.as_ref();
+        let last = name.rsplit('/').next().unwrap_or(name);
+        READ_DATA.iter().any(|known| last.eq_ignore_ascii_case(known))
+    })
 }
 
 fn malformed(span: Span, message: String) -> Diagnostic {

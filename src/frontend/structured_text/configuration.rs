@@ -2,6 +2,7 @@
 
 use super::parser::Parser;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::events::Event;
 use crate::frontend::text::token::{Keyword, Kind};
 use crate::frontend::text::{GivenUp, Parse};
 use crate::ladder::{ProgramInstance, Task};
@@ -75,7 +76,7 @@ impl Parser<'_> {
         let open = self.token.span;
         if self.take(Kind::LeftParenthesis) {
             while self.token.kind != Kind::RightParenthesis {
-                let setting = self.name("INTERVAL or PRIORITY")?;
+                let setting = self.name("INTERVAL, SINGLE or PRIORITY")?;
                 if !self.take(Kind::Assign) {
                     let problem = self.unexpected("`:=`").hint(HINT);
                     return self.give_up(problem);
@@ -85,7 +86,10 @@ impl Parser<'_> {
                     "interval" => &mut task.interval,
                     "priority" => &mut task.priority,
                     "single" => {
-                        self.missing.note("a task that an event starts (SINGLE)", setting.span);
+                        self.events.push(Event { task: task.name.clone(), trigger: value, span: setting.span });
+                        if !self.take(Kind::Comma) {
+                            break;
+                        }
                         continue;
                     }
                     _ => {

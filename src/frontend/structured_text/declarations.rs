@@ -2,8 +2,9 @@
 
 use super::parser::Parser;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::frontend::located;
+use crate::frontend::text::Parse;
 use crate::frontend::text::token::{Keyword, Kind};
-use crate::frontend::text::{GivenUp, Parse};
 use crate::ladder::{Name, Variable, VariableClass};
 use crate::source::Span;
 
@@ -131,8 +132,14 @@ impl Parser<'_> {
         }
         let span = self.token.span;
         if self.source.text()[span.range().end..].starts_with('*') {
-            self.missing.note("an address that is left open with `*`", span);
-            return Err(GivenUp);
+            let text = self.source.text().get(span.range().start..=span.range().end).unwrap_or("");
+            self.advance();
+            self.take(Kind::Star);
+            if let Some(address) = located::open(text, span) {
+                return Ok(address);
+            }
+            let problem = Diagnostic::new(Code::BadAddress, span, "this is not an address");
+            return self.give_up(problem.hint("an address looks like %IX0.3, %QW2 or %I*"));
         }
         Ok(self.address())
     }

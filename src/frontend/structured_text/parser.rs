@@ -4,9 +4,10 @@ use std::ops::{Deref, DerefMut};
 
 use super::body::{self, Scope};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::frontend::Parsed;
+use crate::frontend::events::{self, Event};
 use crate::frontend::text::token::{Dialect, Keyword, Kind};
 use crate::frontend::text::{Parse, Reader};
+use crate::frontend::{Parsed, located};
 use crate::ladder::{Name, Origin, Program, Statement, TypeReference, Unit, UnitKind, VariableClass, key};
 use crate::source::{Source, Span};
 
@@ -20,6 +21,8 @@ pub(super) struct Parser<'a> {
     pub(super) externals: Vec<(Name, Option<TypeReference>)>,
     /// Whether a configuration says what runs.
     pub(super) configured: bool,
+    /// The tasks that an event starts.
+    pub(super) events: Vec<Event>,
 }
 
 impl<'a> Deref for Parser<'a> {
@@ -41,7 +44,7 @@ impl<'a> Parser<'a> {
     pub(super) fn new(source: &'a Source, most_tokens: usize) -> Self {
         let reader = Reader::new(source, Dialect::StructuredText, most_tokens);
         let program = Program::empty(Origin::Imported, reader.stem());
-        Self { reader, program, bodies: Vec::new(), externals: Vec::new(), configured: false }
+        Self { reader, program, bodies: Vec::new(), externals: Vec::new(), configured: false, events: Vec::new() }
     }
 
     /// The whole file.
@@ -64,6 +67,11 @@ impl<'a> Parser<'a> {
         if let (Some(only), None) = (programs.next(), programs.next()) {
             self.program.name = only.name.clone();
         }
+        let mut declared: Vec<&mut Unit> = self.program.units.iter_mut().collect();
+        let found = located::settle(&mut self.program.globals, &mut declared);
+        self.diagnostics.extend(found);
+        let hidden = std::mem::take(&mut self.hidden);
+        self.program.types.splice(0..0, hidden);
         let mut units = std::mem::take(&mut self.program.units);
         for (unit, statements) in units.iter_mut().zip(std::mem::take(&mut self.bodies)) {
             let result = match &unit.kind {
@@ -79,6 +87,9 @@ impl<'a> Parser<'a> {
             unit.rungs = body::rungs(statements, &scope, &mut self.reader);
         }
         self.program.units = units;
+        let events = std::mem::take(&mut self.events);
+        let found = events::settle(&mut self.program, events);
+        self.diagnostics.extend(found);
         let Reader { source, comments, mut diagnostics, missing, .. } = self.reader;
         self.program.comments = body::titles(source.text(), &mut self.program.units, comments);
         diagnostics.extend(missing.into_diagnostics());
@@ -128,16 +139,19 @@ impl<'a> Parser<'a> {
         self.take(Kind::Semicolon);
         let mut unit = Unit { kind, name, variables: Vec::new(), rungs: Vec::new(), span: header };
         while let Kind::Keyword(
-            Keyword::Var
+            list @ (Keyword::Var
             | Keyword::VarInput
             | Keyword::VarOutput
             | Keyword::VarInOut
             | Keyword::VarTemp
-            | Keyword::VarExternal,
+            | Keyword::VarExternal
+            | Keyword::VarGlobal),
         ) = self.token.kind
         {
             let variables = self.variable_block()?;
-            unit.variables.extend(variables);
+            // What a program declares for the blocks that it calls.
+            let list = if list == Keyword::VarGlobal { &mut self.program.globals } else { &mut unit.variables };
+            list.extend(variables);
         }
         let statements = self.unit_body(&unit.name, Kind::Keyword(end));
         self.program.units.push(unit);

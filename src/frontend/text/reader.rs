@@ -9,7 +9,7 @@ use super::token::{Dialect, Kind, Token};
 use super::{MAXIMUM_DEPTH, MOST_DIAGNOSTICS, literals};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::frontend::missing::Missing;
-use crate::ladder::{Address, Area, Comment, Name, Width};
+use crate::ladder::{Address, Area, Comment, Name, TypeDeclaration, Width};
 use crate::source::{Source, Span};
 
 /// How many bytes of clauses a file may copy to the names before them, for each byte that it has. Without a limit
@@ -42,6 +42,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// What the text has and Rung has not.
     pub(crate) missing: Missing,
+    /// Types that declarations write out, under names of their own.
+    pub(crate) hidden: Vec<TypeDeclaration>,
     /// Brackets, parentheses and statements around the current token.
     depth: usize,
     /// TooDeep was said of this declaration or rung: once is enough.
@@ -82,6 +84,7 @@ impl<'a> Reader<'a> {
             comments: Vec::new(),
             diagnostics: Vec::new(),
             missing: Missing::default(),
+            hidden: Vec::new(),
             depth: 0,
             too_deep: false,
             copies_left: (COPIES_PER_BYTE * source.text().len() + (1 << 16)).min(MOST_COPIES),

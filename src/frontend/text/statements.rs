@@ -326,13 +326,20 @@ impl Reader<'_> {
         if !self.enter()? {
             return Ok(arguments);
         }
-        while arguments.list.is_empty() || self.take(Kind::Comma) {
-            if arguments.list.is_empty() && self.token.kind == Kind::RightParenthesis {
+        let mut is_first = true;
+        while is_first || self.take(Kind::Comma) {
+            if is_first && self.token.kind == Kind::RightParenthesis {
                 break;
             }
+            is_first = false;
             let start = self.token.span.start;
             let tree = self.tree()?;
             let named = matches!(self.token.kind, Kind::Assign | Kind::Arrow);
+            // CODESYS leaves the names of pins that nothing is wired to.
+            if self.dialect == Dialect::StructuredText && named && tree.as_name().is_some() && self.is_left_open() {
+                self.advance();
+                continue;
+            }
             let (pin, wire) = match tree.as_name().cloned() {
                 Some(pin) if self.take(Kind::Arrow) => {
                     (pin, Wire::Output(self.reference("the variable that takes the output")?))
@@ -358,6 +365,12 @@ impl Reader<'_> {
         self.close(Kind::RightParenthesis, open, "arguments are parted by commas")?;
         self.leave();
         Ok(arguments)
+    }
+
+    /// Whether nothing stands between the `:=` or `=>` here and the end of the argument.
+    fn is_left_open(&self) -> bool {
+        let behind = self.source.text()[self.token.span.range().end..].trim_start();
+        behind.starts_with([',', ')'])
     }
 
     /// `IF a THEN … ELSIF b THEN … ELSE … END_IF`, behind the IF.

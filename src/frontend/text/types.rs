@@ -10,11 +10,52 @@ impl Reader<'_> {
     pub(crate) fn type_reference(&mut self) -> Parse<TypeReference> {
         let start = self.token.span.start;
         let dimensions = if self.take(Kind::Keyword(Keyword::Array)) { self.dimensions()? } else { Vec::new() };
-        if self.dialect == Dialect::StructuredText {
+        let name = if self.dialect == Dialect::StructuredText {
             self.refuse_type()?;
-        }
-        let name = self.name("the name of a type")?;
+            self.written_out(&dimensions)?
+        } else {
+            None
+        };
+        let name = match name {
+            Some(name) => name,
+            None => self.name("the name of a type")?,
+        };
         Ok(TypeReference { dimensions, name, span: self.since(start) })
+    }
+
+    /// The name of a type that is written out where another one's name could stand: the elements of an array of arrays, a
+    /// structure, an enumeration.
+    fn written_out(&mut self, dimensions: &[Dimension]) -> Parse<Option<Name>> {
+        let start = self.token.span;
+        let kind = match self.token.kind {
+            Kind::Keyword(Keyword::Array) if !dimensions.is_empty() => {
+                // Each nests in the one before.
+                if !self.enter_statement(start) {
+                    return Err(GivenUp);
+                }
+                let ty = self.type_reference()?;
+                self.leave();
+                TypeKind::Alias { ty, initial: None }
+            }
+            Kind::Keyword(Keyword::Struct) => {
+                if !self.enter_statement(start) {
+                    return Err(GivenUp);
+                }
+                let kind = self.structure()?;
+                self.leave();
+                kind
+            }
+            Kind::LeftParenthesis => {
+                let open = start;
+                self.advance();
+                self.values(None, open)?
+            }
+            _ => return Ok(None),
+        };
+        let span = self.since(start.start);
+        let name = Name::new(format!("_TYPE{}", self.hidden.len() + 1), span);
+        self.hidden.push(TypeDeclaration { name: name.clone(), kind, span });
+        Ok(Some(name))
     }
 
     /// Gives up a declaration of a type that only structured text has.
@@ -40,15 +81,8 @@ impl Reader<'_> {
             "UNION",
         ];
         let span = self.token.span;
-        let what = match self.token.kind {
-            Kind::Keyword(Keyword::Array) => "an array of arrays".to_owned(),
-            Kind::Keyword(Keyword::Struct) => "a structure without a name".to_owned(),
-            Kind::LeftParenthesis => "an enumeration without a name".to_owned(),
-            _ => match UNKNOWN.into_iter().find(|name| self.at_word(name)) {
-                Some(name) => format!("the type {name}"),
-                None => return Ok(()),
-            },
-        };
+        let Some(name) = UNKNOWN.into_iter().find(|name| self.at_word(name)) else { return Ok(()) };
+        let what = format!("the type {name}");
         self.missing.note(&what, span);
         Err(GivenUp)
     }
@@ -151,6 +185,14 @@ impl Reader<'_> {
     }
 
     fn enumeration_from(&mut self, base: Option<Name>, open: Span) -> Parse<TypeKind> {
+        let kind = self.values(base, open)?;
+        let TypeKind::Enumeration { base, values, .. } = kind else { return Ok(kind) };
+        let initial = if self.take(Kind::Assign) { Some(self.name("the name of a value")?) } else { None };
+        Ok(TypeKind::Enumeration { base, values, initial })
+    }
+
+    /// `red, green := 4)`
+    fn values(&mut self, base: Option<Name>, open: Span) -> Parse<TypeKind> {
         let mut values = Vec::new();
         loop {
             self.anchor_here();
@@ -162,8 +204,7 @@ impl Reader<'_> {
             }
         }
         self.close(Kind::RightParenthesis, open, "the values of an enumeration are parted by commas")?;
-        let initial = if self.take(Kind::Assign) { Some(self.name("the name of a value")?) } else { None };
-        Ok(TypeKind::Enumeration { base, values, initial })
+        Ok(TypeKind::Enumeration { base, values, initial: None })
     }
 
     /// `struct x, y : REAL := 1.5  name : INT end_struct`

@@ -1,8 +1,10 @@
-//! Functions, written from what the standard says that each computes, on numbers without a width.
+//! Functions, written from what the standard says that each computes, on numbers without a width; but for logarithms, powers
+//! and angles, which the tested functions compute here, too.
 
 use rung::elementary::{Elementary, Value};
 use rung::ladder::functions::{Function, StandardFunction};
 use rung::ladder::{BinaryOperator, UnaryOperator};
+use rung::mathematics::{self, Native};
 
 use super::expression::{binary, double, number, single, unary, wrapped};
 
@@ -25,17 +27,18 @@ fn standard(function: StandardFunction, ty: Elementary, arguments: &[Value]) -> 
         F::Absolute if ty.is_real() => Value::from_bits(ty, first.bits() & !(1 << (ty.bits() - 1))),
         F::Absolute => wrapped(ty, number(first).abs()),
         F::SquareRoot => rounded(ty, real(first).sqrt()),
-        // One implementation computes these for all, so that only the choice of it is tested.
-        F::Ln => rounded(ty, libm::log(real(first))),
-        F::Log => rounded(ty, libm::log10(real(first))),
-        F::Exp => rounded(ty, libm::exp(real(first))),
-        F::Sin => rounded(ty, libm::sin(real(first))),
-        F::Cos => rounded(ty, libm::cos(real(first))),
-        F::Tan => rounded(ty, libm::tan(real(first))),
-        F::Asin => rounded(ty, libm::asin(real(first))),
-        F::Acos => rounded(ty, libm::acos(real(first))),
-        F::Atan => rounded(ty, libm::atan(real(first))),
-        F::Power => rounded(ty, libm::pow(real(first), real(arguments[1]))),
+        // Computed by the tested functions: the same bits are asked for, which nothing else gives. So only the choice of
+        // them is tested; `tests/mathematics.rs` compares them with another library's.
+        F::Ln => rounded(ty, mathematics::ln(Native, real(first))),
+        F::Log => rounded(ty, mathematics::log10(Native, real(first))),
+        F::Exp => rounded(ty, mathematics::exp(Native, real(first))),
+        F::Sin => rounded(ty, mathematics::sin(Native, real(first))),
+        F::Cos => rounded(ty, mathematics::cos(Native, real(first))),
+        F::Tan => rounded(ty, mathematics::tan(Native, real(first))),
+        F::Asin => rounded(ty, mathematics::asin(Native, real(first))),
+        F::Acos => rounded(ty, mathematics::acos(Native, real(first))),
+        F::Atan => rounded(ty, mathematics::atan(Native, real(first))),
+        F::Power => rounded(ty, mathematics::pow(Native, real(first), real(arguments[1]))),
         // Rounded to the type after every step, as infix operators are.
         F::Add if ty.is_real() => reduce(arguments, |a, b| sum(ty, a, b)),
         F::Add => wrapped(ty, arguments.iter().map(|value| number(*value)).sum()),

@@ -23,7 +23,7 @@ pub(super) fn types(xml: &mut Xml, program: &Program, words: Words<'_>) {
                     xml.element("struct", &[], |xml| {
                         for field in fields {
                             xml.element("variable", &[("name", &words.names.spell(&field.name.text))], |xml| {
-                                xml.element("type", &[], |xml| type_reference(xml, &field.ty, words));
+                                xml.on_one_line("type", &[], |xml| type_reference(xml, &field.ty, words));
                                 initial(xml, field.initial.as_ref(), words);
                             });
                         }
@@ -80,7 +80,7 @@ pub(super) fn type_reference(xml: &mut Xml, ty: &TypeReference, words: Words<'_>
 
 fn initial(xml: &mut Xml, value: Option<&Expression>, words: Words<'_>) {
     if let Some(value) = value {
-        xml.element("initialValue", &[], |xml| initial_value(xml, value, words));
+        xml.on_one_line("initialValue", &[], |xml| initial_value(xml, value, words));
     }
 }
 
@@ -157,7 +157,7 @@ fn variable(xml: &mut Xml, variable: &Variable, words: Words<'_>) {
     let mut attributes = vec![("name", &*name)];
     attributes.extend(address.as_ref().map(|address| ("address", address.as_str())));
     xml.element("variable", &attributes, |xml| {
-        xml.element("type", &[], |xml| match &variable.ty {
+        xml.on_one_line("type", &[], |xml| match &variable.ty {
             Some(ty) => type_reference(xml, ty, words),
             None => xml.empty("BOOL", &[]),
         });

@@ -199,7 +199,7 @@ impl Page<'_> {
         let attributes: Vec<(&str, &str)> = attributes.iter().map(|(name, value)| (*name, value.as_str())).collect();
         let top = self.line(element).saturating_sub(shape.line());
         xml.element(name, &attributes, |xml| {
-            position(xml, "position", element.x, top);
+            xml.position("position", element.x, top);
             self.inside(xml, element);
         });
     }
@@ -207,14 +207,14 @@ impl Page<'_> {
     fn inside(&self, xml: &mut Xml, element: &Element) {
         let shape = &element.shape;
         let (width, line) = (shape.width(), shape.line());
-        let right = |xml: &mut Xml, pin: i32| position(xml, "relPosition", width, line + pin * PIN);
+        let right = |xml: &mut Xml, pin: i32| xml.position("relPosition", width, line + pin * PIN);
         match shape {
             Shape::LeftRail => {
-                xml.element("connectionPointOut", &[("formalParameter", "")], |xml| right(xml, 0));
+                xml.on_one_line("connectionPointOut", &[("formalParameter", "")], |xml| right(xml, 0));
             }
             Shape::Contact { variable, .. } | Shape::Coil { variable, .. } => {
                 self.point(xml, element, &element.wires, 0);
-                xml.element("connectionPointOut", &[], |xml| right(xml, 0));
+                xml.on_one_line("connectionPointOut", &[], |xml| right(xml, 0));
                 xml.text("variable", variable);
             }
             Shape::Block { inputs, in_outs, outputs, .. } => {
@@ -236,13 +236,13 @@ impl Page<'_> {
                 xml.element("outputVariables", &[], |xml| {
                     for (pin, output) in (0..).zip(outputs) {
                         xml.element("variable", &[("formalParameter", output)], |xml| {
-                            xml.element("connectionPointOut", &[], |xml| right(xml, pin));
+                            xml.on_one_line("connectionPointOut", &[], |xml| right(xml, pin));
                         });
                     }
                 });
             }
             Shape::InVariable(text) => {
-                xml.element("connectionPointOut", &[], |xml| right(xml, 0));
+                xml.on_one_line("connectionPointOut", &[], |xml| right(xml, 0));
                 xml.text("expression", text);
             }
             Shape::OutVariable(text) => {
@@ -258,7 +258,7 @@ impl Page<'_> {
     /// A pin with its wires, each drawn from the pin back to where it comes from.
     fn point(&self, xml: &mut Xml, element: &Element, wires: &[Source], pin: i32) {
         xml.element("connectionPointIn", &[], |xml| {
-            position(xml, "relPosition", 0, element.shape.line() + pin * PIN);
+            xml.position("relPosition", 0, element.shape.line() + pin * PIN);
             let end = (element.x, self.line(element) + pin * PIN);
             for wire in wires {
                 let from = &self.drawing.elements[wire.id];
@@ -269,21 +269,17 @@ impl Page<'_> {
                 if let Shape::Block { outputs, .. } = &from.shape {
                     attributes.extend(outputs.get(wire.output).map(|name| ("formalParameter", name.as_str())));
                 }
-                xml.element("connection", &attributes, |xml| {
-                    position(xml, "position", end.0, end.1);
+                xml.on_one_line("connection", &attributes, |xml| {
+                    xml.position("position", end.0, end.1);
                     if end.1 != start.1 {
                         // Close to where it starts, so that wires to one element share what is left.
                         let bend = start.0.saturating_add(10).min(end.0);
-                        position(xml, "position", bend, end.1);
-                        position(xml, "position", bend, start.1);
+                        xml.position("position", bend, end.1);
+                        xml.position("position", bend, start.1);
                     }
-                    position(xml, "position", start.0, start.1);
+                    xml.position("position", start.0, start.1);
                 });
             }
         });
     }
-}
-
-fn position(xml: &mut Xml, name: &str, x: i32, y: i32) {
-    xml.empty(name, &[("x", &x.to_string()), ("y", &y.to_string())]);
 }

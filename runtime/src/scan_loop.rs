@@ -1,7 +1,7 @@
-//! The scan cycle: copy in, latch the time, scan, copy out; and outputs off as soon as anything is wrong.
+//! The scan loop's one cycle: copy in, latch the time, scan, copy out; and outputs off as soon as anything is wrong.
 //!
 //! One `now` holds for the whole scan. Outputs leave only from the image, and only after a scan that ended in
-//! time and may be trusted. A controller that has stopped never runs again. No cycle may allocate.
+//! time and may be trusted. A loop that has stopped never runs again. No cycle may allocate.
 
 use crate::{FieldIo, Inputs, Latch, Outputs, Regions, Scan, TickSource};
 
@@ -11,9 +11,12 @@ pub trait Clock {
     fn nanoseconds(&self) -> u64;
 }
 
-/// A program, its image, its field and its time.
+/// A program, its image, its field and its time: what a soft PLC runs cyclically, in real time.
+///
+/// It knows bytes only; who wants variables by name, typed values and no field at all takes `rung::Controller`, and
+/// gets one of these over it for real time.
 #[derive(Debug)]
-pub struct Controller<'a, S, F: FieldIo, T, C> {
+pub struct ScanLoop<'a, S, F: FieldIo, T, C> {
     scan: S,
     field: F,
     ticks: Latch<T>,
@@ -27,13 +30,13 @@ pub struct Controller<'a, S, F: FieldIo, T, C> {
 /// One cycle that went well.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Cycle {
-    /// The time that the scan saw, in nanoseconds since the controller started.
+    /// The time that the scan saw, in nanoseconds since the loop started.
     pub now: i64,
     /// Nanoseconds from before the copy in to after the copy out.
     pub took: u64,
 }
 
-/// Why a controller stopped.
+/// Why a loop stopped.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Fault<E> {
     /// The inputs could not be copied in.
@@ -53,7 +56,7 @@ pub enum Fault<E> {
     AlreadyStopped,
 }
 
-/// A controller that stopped by itself.
+/// A loop that stopped by itself.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stopped<E> {
     /// Why.
@@ -62,8 +65,8 @@ pub struct Stopped<E> {
     pub outputs_off: Result<(), E>,
 }
 
-impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> Controller<'a, S, F, T, C> {
-    /// A controller at time 0 that is ready for its first cycle.
+impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> ScanLoop<'a, S, F, T, C> {
+    /// A loop at time 0 that is ready for its first cycle.
     ///
     /// `image` holds what every variable starts with; `watchdog` is how many nanoseconds a cycle may take.
     ///
@@ -85,7 +88,7 @@ impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> Controller<'a, S, F, T, C
     /// Runs one cycle.
     ///
     /// # Errors
-    /// The fault that stopped the controller. The outputs are off then, unless the field says that it failed.
+    /// The fault that stopped the loop. The outputs are off then, unless the field says that it failed.
     pub fn cycle(&mut self) -> Result<Cycle, Stopped<F::Error>> {
         if !self.running {
             return Err(Stopped { fault: Fault::AlreadyStopped, outputs_off: Ok(()) });
@@ -115,7 +118,7 @@ impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> Controller<'a, S, F, T, C
         if took > self.watchdog { Err(Fault::Watchdog { took, limit: self.watchdog }) } else { Ok(took) }
     }
 
-    /// The ticks since the controller started.
+    /// The ticks since the loop started.
     pub fn ticks(&mut self) -> &mut Latch<T> {
         &mut self.ticks
     }
@@ -136,8 +139,8 @@ impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> Controller<'a, S, F, T, C
     }
 }
 
-impl<S, F: FieldIo, T, C> Controller<'_, S, F, T, C> {
-    /// Stops for good and puts the outputs off. Dropping the controller does the same.
+impl<S, F: FieldIo, T, C> ScanLoop<'_, S, F, T, C> {
+    /// Stops for good and puts the outputs off. Dropping the loop does the same.
     ///
     /// # Errors
     /// When the field cannot say that all outputs are off.
@@ -146,7 +149,7 @@ impl<S, F: FieldIo, T, C> Controller<'_, S, F, T, C> {
     }
 }
 
-impl<S, F: FieldIo, T, C> Drop for Controller<'_, S, F, T, C> {
+impl<S, F: FieldIo, T, C> Drop for ScanLoop<'_, S, F, T, C> {
     fn drop(&mut self) {
         // There is nobody left to tell that it failed.
         let _ = self.stop();

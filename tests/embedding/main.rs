@@ -1,0 +1,3 @@
+//! Rung inside another program: as a library, and as an object that is linked.
+
+mod controller;
