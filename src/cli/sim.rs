@@ -60,7 +60,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["stimuli", "cycle", "scans", "duration"])]
     replay: Option<PathBuf>,
     #[command(flatten)]
-    many: lanes::Arguments,
+    many: lanes::Plants,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]

@@ -108,7 +108,7 @@ fn what_cannot_be_is_refused_with_its_code() {
         (&["--lanes", "9999999999999"], "R0922"),
         (&["--lanes", "5", "--assert", "lamp +"], "R02"),
         (&["--lanes", "5", "--assert", "nowhere"], "R0920"),
-        (&["--lanes", "5", "--signals", "nowhere"], "R0302"),
+        (&["--lanes", "5", "--signals", "nowhere"], "R0301"),
     ] {
         let refused = folder.rung(["sim", "lamp.rung"].iter().chain(arguments));
         let said = text(&refused.stderr);

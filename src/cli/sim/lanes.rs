@@ -23,7 +23,7 @@ use summary::{Summary, table};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Many plants")]
-pub(super) struct Arguments {
+pub(super) struct Plants {
     /// Run so many plants at once, each with random inputs of its own, and sum up what they did
     #[arg(long, value_name = "N", conflicts_with_all = ["trace", "replay", "engine", "lane"])]
     pub(super) lanes: Option<usize>,
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     pub(super) failing: Option<PathBuf>,
 }
 
-impl Arguments {
+impl Plants {
     /// Whether inputs are random.
     pub(super) fn random(&self) -> bool {
         self.lanes.is_some() || self.seed.is_some() || self.lane.is_some()
@@ -92,7 +92,7 @@ struct Done {
 /// A run of many plants.
 pub(super) struct Run<'a> {
     pub(super) file: &'a Path,
-    pub(super) arguments: &'a Arguments,
+    pub(super) arguments: &'a Plants,
     pub(super) program: &'a Program,
     pub(super) signals: Option<&'a [String]>,
     pub(super) schedule: Schedule,
