@@ -6,8 +6,11 @@
 pub mod both;
 pub mod clif;
 pub mod disassemble;
+pub mod elide;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
 pub mod lanes;
+pub mod object;
+pub mod report;
 pub mod target;

@@ -45,6 +45,20 @@ fn a_run_says_what_it_loaded_tells_changes_and_ends_with_a_summary() {
 }
 
 #[test]
+fn a_run_that_may_leaves_out_scans_and_says_how_many() {
+    for engine in ["jit", "both"] {
+        let options = ["--for", "1s", "--elide", "--engine", engine, "--set", "START=1"];
+        let output = run(&example("start_stop.rung"), &options);
+        let text = stdout(&output);
+        assert_eq!(output.status.code(), Some(0), "{text}{}", stderr(&output));
+        assert!(text.contains("s  motor = 1"), "{text}");
+        let left_out = text.split(" scans left out").next().and_then(|before| before.rsplit(' ').next());
+        let left_out: u64 = left_out.and_then(|count| count.parse().ok()).unwrap_or_else(|| panic!("{text}"));
+        assert!(left_out > 0, "nothing changes after the start: {text}");
+    }
+}
+
+#[test]
 fn what_cannot_be_run_is_a_coded_error() {
     let missing = run(Path::new("there/is/no.rung"), &["--for", "1s"]);
     assert_eq!(missing.status.code(), Some(1));

@@ -35,6 +35,15 @@ pub trait Scan {
     /// When `image` is not of the program's size.
     fn scan(&mut self, image: &mut [u8], now: i64);
 
+    /// The same, called by someone who since the last scan of this image wrote nothing to it but inputs. A program that
+    /// leaves out scans which would change nothing has less to look at then.
+    ///
+    /// # Panics
+    /// When `image` is not of the program's size.
+    fn scan_inputs(&mut self, image: &mut [u8], now: i64) {
+        self.scan(image, now);
+    }
+
     /// Whether the image that the last scan left may go out. A scan that checks itself, as two engines side by
     /// side do, says FALSE once it has found a difference; outputs are put off then.
     fn trusted(&self) -> bool {
@@ -45,6 +54,10 @@ pub trait Scan {
 impl<S: Scan + ?Sized> Scan for &mut S {
     fn scan(&mut self, image: &mut [u8], now: i64) {
         (**self).scan(image, now);
+    }
+
+    fn scan_inputs(&mut self, image: &mut [u8], now: i64) {
+        (**self).scan_inputs(image, now);
     }
 
     fn trusted(&self) -> bool {

@@ -102,7 +102,8 @@ impl<'a, S: Scan, F: FieldIo, T: TickSource, C: Clock> ScanLoop<'a, S, F, T, C> 
         self.regions.normalise(self.image);
         let ticks = self.ticks.latch();
         let now = self.ticks.nanoseconds(ticks);
-        self.scan.scan(self.image, now);
+        // The image is borrowed for as long as there is a controller: nobody else can have written to it.
+        self.scan.scan_inputs(self.image, now);
         if !self.scan.trusted() {
             return Err(Fault::Distrusted);
         }

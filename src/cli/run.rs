@@ -57,6 +57,9 @@ pub(super) struct Arguments {
     /// Which engine runs it
     #[arg(long, value_enum, default_value = "jit")]
     engine: Kind,
+    /// Leave out scans that would change nothing: the results are the same, but a scan's time then depends on the plant
+    #[arg(long)]
+    elide: bool,
     /// End after this time
     #[arg(long = "for", value_parser = duration::parse, value_name = "TIME")]
     length: Option<i64>,
@@ -83,8 +86,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cycle = arguments.cycle.unwrap_or_else(|| tasks::cycle(&program));
     let timing = timing(arguments, cycle)?;
     report(&tasks::notes(&program, cycle));
-    let engine = Engine::new(arguments.engine, &program)
-        .map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
+    let make = if arguments.elide { Engine::elided } else { Engine::new };
+    let engine =
+        make(arguments.engine, &program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
     let compiled_in = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
     let points = Points::new(&checked, &program.layout);
     let inputs = initial_inputs(&arguments.set, &points)?;
@@ -116,7 +120,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shared = Arc::clone(&machine.shared);
     let outcome = machine.finish();
     let fault = outcome.as_ref().is_ok_and(|outcome| points.is_faulty(&outcome.image));
-    let watched = watched.and_then(|()| print(&summary(&shared.statistics, timing.watchdog, &program, fault)));
+    let left_out = outcome.as_ref().ok().and_then(|outcome| outcome.engine.left_out());
+    let summary = summary(&shared.statistics, timing.watchdog, &program, left_out, fault);
+    let watched = watched.and_then(|()| print(&summary));
     // A fault is told in any case, also where nobody reads the standard output any more.
     match outcome {
         Err(Lost::Hung) => {
@@ -200,13 +206,14 @@ fn description(
 }
 
 /// The figures of a whole run.
-fn summary(statistics: &Statistics, watchdog: u64, program: &Program, fault: bool) -> String {
+fn summary(statistics: &Statistics, watchdog: u64, program: &Program, left_out: Option<u64>, fault: bool) -> String {
+    let left_out = left_out.map_or_else(String::new, |scans| format!(", {scans} scans left out"));
     let tasks = tasks::listed(program).map_or_else(String::new, |tasks| format!("  tasks     {tasks}\n"));
     let fault = if fault { format!("  fault     {}\n", tasks::FAULT) } else { String::new() };
     let line =
         |name: &str, histogram: &Histogram| format!("  {name:<9} {} (p50 / p99 / max)\n", plain::quantiles(histogram));
     format!(
-        "ended after {} cycles, {} overruns, {} skipped\n{}{}  {:<9} {}\n{tasks}{fault}",
+        "ended after {} cycles, {} overruns, {} skipped{left_out}\n{}{}  {:<9} {}\n{tasks}{fault}",
         statistics.cycles(),
         statistics.overruns(),
         statistics.skipped(),

@@ -15,6 +15,7 @@ use super::run::{difference, time};
 use super::{Failure, Missing, WholeFile, cannot_write, duration, load_checked, read_source, report, tasks};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
+use crate::engine::elide::Elided;
 use crate::engine::interp::Interpreter;
 use crate::engine::jit::Jit;
 use crate::logic::{Layout, Program};
@@ -49,6 +50,9 @@ pub(super) struct Arguments {
     /// What runs the scans; `both` compares the whole image after each and stops at a difference
     #[arg(long, value_enum, default_value = "jit")]
     engine: Engine,
+    /// Leave out scans that would change nothing: the trace is the same
+    #[arg(long)]
+    elide: bool,
     /// Write a trace: a table (`.csv`), waves (`.vcd`), a timing diagram (`.svg`), or a table on the standard output
     /// (`-`, which is the default)
     #[arg(long, value_name = "FILE")]
@@ -108,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return run.run(lanes);
     }
     // Made before the outputs, so that what cannot be compiled leaves nothing.
-    let mut engines = Engines::new(arguments.engine, &program)?;
+    let mut engines = Engines::new(arguments.engine, arguments.elide, &program)?;
     let paths = trace_paths(&arguments.trace)?;
     // Where it would end the process at once, a temporary file would be left beside each output.
     let stop = catch_interrupts()?;
@@ -317,12 +321,15 @@ struct Engines {
 }
 
 impl Engines {
-    fn new(engine: Engine, program: &Program) -> Result<Self, Failure> {
+    fn new(engine: Engine, elide: bool, program: &Program) -> Result<Self, Failure> {
         let compiled = || -> Result<Box<dyn Scan>, Failure> {
             let jit = Jit::compile(program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
-            Ok(Box::new(jit))
+            Ok(if elide { Box::new(Elided::new(jit, program)) } else { Box::new(jit) })
         };
-        let interpreted = || Box::new(Interpreter::new(program));
+        let interpreted = || -> Box<dyn Scan> {
+            let interpreter = Interpreter::new(program);
+            if elide { Box::new(Elided::new(interpreter, program)) } else { Box::new(interpreter) }
+        };
         Ok(match engine {
             Engine::Jit => Self { first: compiled()?, second: None },
             Engine::Interp => Self { first: interpreted(), second: None },

@@ -259,6 +259,7 @@ fn touches_turns(program: &Program) -> bool {
         | Op::Compare(..)
         | Op::Select(..)
         | Op::Convert(_)
+        | Op::Reinterpret(_)
         | Op::Call(..) => false,
     })
 }

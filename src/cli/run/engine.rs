@@ -3,6 +3,7 @@
 use rung_runtime::Scan;
 
 use crate::engine::both::{Both, Difference};
+use crate::engine::elide::Elided;
 use crate::engine::interp::Interpreter;
 use crate::engine::jit::{CompileError, Jit};
 use crate::logic::Program;
@@ -35,6 +36,8 @@ pub(super) enum Engine {
     Jit(Jit),
     Interp(Interpreter),
     Both(Box<Recorder<Both<Interpreter, Jit>>>),
+    /// One of the others, without the scans that would change nothing.
+    Elided(Box<Elided<Self>>),
 }
 
 impl Engine {
@@ -49,19 +52,34 @@ impl Engine {
         })
     }
 
+    /// The same, but scans that would change nothing are left out.
+    pub(super) fn elided(kind: Kind, program: &Program) -> Result<Self, CompileError> {
+        Ok(Self::Elided(Box::new(Elided::new(Self::new(kind, program)?, program))))
+    }
+
+    /// Scans that were left out, where any may be.
+    pub(super) fn left_out(&self) -> Option<u64> {
+        if let Self::Elided(elided) = self { Some(elided.left_out()) } else { None }
+    }
+
     /// Bytes of machine code, where there is any.
     pub(super) fn code_bytes(&self) -> Option<usize> {
         match self {
             Self::Jit(jit) => Some(jit.code_bytes()),
             Self::Interp(_) => None,
             Self::Both(both) => Some(both.recorded().second().code_bytes()),
+            Self::Elided(elided) => elided.engine().code_bytes(),
         }
     }
 
     /// What the two engines disagree on, and the scans that lead there; the replay's reason and program are left
     /// empty.
     pub(super) fn difference(&self, program: &Program) -> Option<(Difference, Replay)> {
-        let Self::Both(both) = self else { return None };
+        let both = match self {
+            Self::Both(both) => both,
+            Self::Elided(elided) => return elided.engine().difference(program),
+            Self::Jit(_) | Self::Interp(_) => return None,
+        };
         let difference = both.recorded().difference(program)?;
         Some((difference, both.replay(String::new(), 0, &program.layout, String::new())))
     }
@@ -73,6 +91,14 @@ impl Scan for Engine {
             Self::Jit(jit) => jit.scan(image, now),
             Self::Interp(interpreter) => interpreter.scan(image, now),
             Self::Both(both) => both.scan(image, now),
+            Self::Elided(elided) => elided.scan(image, now),
+        }
+    }
+
+    fn scan_inputs(&mut self, image: &mut [u8], now: i64) {
+        match self {
+            Self::Elided(elided) => elided.scan_inputs(image, now),
+            Self::Jit(_) | Self::Interp(_) | Self::Both(_) => self.scan(image, now),
         }
     }
 
@@ -80,6 +106,7 @@ impl Scan for Engine {
         match self {
             Self::Jit(_) | Self::Interp(_) => true,
             Self::Both(both) => both.trusted(),
+            Self::Elided(elided) => elided.trusted(),
         }
     }
 }

@@ -170,6 +170,7 @@ fn choice(program: &Program, slot: SlotId, store: usize) -> Option<Choice> {
             | Op::Binary(..)
             | Op::Compare(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
             | Op::StoreIndexed(..)
@@ -258,6 +259,7 @@ impl Facts {
                 | Op::Compare(..)
                 | Op::Select(..)
                 | Op::Convert(_)
+                | Op::Reinterpret(_)
                 | Op::Call(..) => {}
             }
         }

@@ -253,7 +253,7 @@ impl Sorter<'_> {
                 let (condition, a, b) = (self.bit(condition), self.bit(a), self.bit(b));
                 self.select(condition, a, b)
             }
-            Op::Convert(a) if self.ty(a) == Elementary::Bool => self.bit(a),
+            Op::Convert(a) | Op::Reinterpret(a) if self.ty(a) == Elementary::Bool => self.bit(a),
             Op::Compare(op, a, b) => {
                 let (a, b) = (self.column(a), self.column(b));
                 return self.answer(id, |to| Step::Compare { op, to, a, b });
@@ -277,7 +277,7 @@ impl Sorter<'_> {
                 let (to, from, condition) = (self.elements(to), self.elements(from), self.word(condition));
                 return self.on_words(Step::CopyArray { to, from, condition });
             }
-            Op::Now | Op::Call(..) => unreachable!("not of type BOOL in a verified program"),
+            Op::Now | Op::Call(..) | Op::Reinterpret(_) => unreachable!("not of type BOOL in a verified program"),
         };
         self.hold_bit(id, bit);
     }
@@ -314,6 +314,11 @@ impl Sorter<'_> {
             Op::Convert(a) => {
                 let from = self.place(a);
                 self.make(id, ty, |to| Step::Convert { to: Place::Column(to), from });
+            }
+            Op::Reinterpret(a) => {
+                // A column holds no more than the bits.
+                let from = self.column(a);
+                self.make(id, ty, |to| Step::Copy { to, from });
             }
             Op::Call(helper, a, b) => {
                 let (a, b) = (self.column(a), b.map(|b| self.column(b)));
@@ -373,6 +378,7 @@ impl Sorter<'_> {
             | Op::Unary(..)
             | Op::Compare(..)
             | Op::Convert(_)
+            | Op::Reinterpret(_)
             | Op::Call(..)
             | Op::LoadIndexed(..)
             | Op::StoreIndexed(..)
