@@ -115,8 +115,7 @@ impl Outlook {
 /// The slots that nothing but loads and stores of their own can reach and that no name shows.
 fn hidden(program: &Program) -> BTreeSet<SlotId> {
     let layout = &program.layout;
-    let mut may: Vec<bool> =
-        layout.slots().iter().map(|slot| slot.area == Area::State && slot.name != FAULT).collect();
+    let mut may: Vec<bool> = layout.slots().iter().map(|slot| slot.area == Area::State && slot.name != FAULT).collect();
     for observed in layout.observed() {
         may[observed.slot.index()] = false;
     }
@@ -207,9 +206,8 @@ impl Scanned<'_> {
                 Known::Exactly(a.wrapping_sub(b).cast_unsigned())
             }
             (Binary::Subtract, Known::TimePlus(a), Known::Exactly(b)) => moved(a, b.cast_signed().checked_neg()),
-            (Binary::Add, Known::TimePlus(a), Known::Exactly(b)) | (Binary::Add, Known::Exactly(b), Known::TimePlus(a)) => {
-                moved(a, Some(b.cast_signed()))
-            }
+            (Binary::Add, Known::TimePlus(a), Known::Exactly(b))
+            | (Binary::Add, Known::Exactly(b), Known::TimePlus(a)) => moved(a, Some(b.cast_signed())),
             // Where the other operand decides.
             (Binary::Minimum | Binary::Maximum, _, _) if ty.is_signed() => {
                 let less = self.compare(Compare::Less, ty, a, b);
