@@ -10,4 +10,6 @@ pub mod elide;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
+pub mod object;
+pub mod report;
 pub mod target;

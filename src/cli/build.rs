@@ -1,5 +1,5 @@
-//! `rung build`: a program as logic, as Cranelift's intermediate form or as assembly of a target, and the map of its
-//! image.
+//! `rung build`: a program as an object file, as logic, as Cranelift's intermediate form or as assembly of a target, and
+//! the map of its image.
 
 use std::path::{Path, PathBuf};
 
@@ -8,8 +8,8 @@ use clap::ValueEnum;
 use super::{Failure, Missing, duration, load_checked, read_source, write_whole};
 use crate::diagnostic::Code;
 use crate::engine::clif::{self, CompileError};
-use crate::engine::disassemble;
 use crate::engine::target::{BadTarget, Target};
+use crate::engine::{disassemble, object, report};
 use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     missing: Missing,
-    /// What to write [default: logic, unless only a map is asked for]
+    /// What to write [default: obj with a target or for a file `.o`; else logic, unless only a map is asked for]
     #[arg(long, value_enum)]
     emit: Option<Emit>,
     /// Where to write it; `-` is the standard output
@@ -53,6 +53,9 @@ pub(super) struct Arguments {
     /// Write the map of the process image, in JSON
     #[arg(long, value_name = "FILE.json")]
     map: Option<PathBuf>,
+    /// Report what a scan of the object costs, rung by rung, in JSON where the file is named so [default: printed]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = "-")]
+    report: Option<PathBuf>,
     /// The map of an earlier build: what it places stays in its place
     #[arg(long, value_name = "FILE.json")]
     previous_map: Option<PathBuf>,
@@ -60,6 +63,8 @@ pub(super) struct Arguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
 enum Emit {
+    /// An object file for the target, with the C interface
+    Obj,
     /// The logic IR, as text
     Logic,
     /// Cranelift's intermediate form for the target
@@ -70,7 +75,7 @@ enum Emit {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let passes = passes_until(arguments.after.as_deref())?;
-    Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
+    let interface = Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
         .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
     let target = arguments.target()?;
     let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
@@ -78,17 +83,41 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
     let program = PASSES[..passes].iter().fold(program, |program, pass| (pass.run)(program));
-    let built = Built { program: &program, target: target.as_ref() };
+    let built = Built { program: &program, interface: &interface, target: target.as_ref() };
     // All outputs are made before the first is written.
-    let emit = arguments.emit.or(arguments.map.is_none().then_some(Emit::Logic));
+    let emit = arguments.emit();
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
+    let report = arguments.report.as_deref().map(|path| built.report(path)).transpose()?;
+    if arguments.report.as_deref() == Some(Path::new("-")) && output.is_some() && arguments.output == Path::new("-") {
+        let hint = "give the output a file with `-o`, or the report one with `--report=FILE`";
+        return Err(Failure::hinted(Code::BadOptions, "output and report cannot both be printed", hint));
+    }
     if let Some(path) = &arguments.map {
         write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
     }
-    output.map_or(Ok(()), |output| write_whole(&arguments.output, &output))
+    if let Some(output) = output {
+        write_whole(&arguments.output, &output)?;
+    }
+    match (&arguments.report, report) {
+        (Some(path), Some(report)) => write_whole(path, report.as_bytes()),
+        _ => Ok(()),
+    }
 }
 
 impl Arguments {
+    /// What to write, if anything beside what has an option of its own.
+    fn emit(&self) -> Option<Emit> {
+        let objects = self.output.extension().is_some_and(|extension| extension == "o" || extension == "obj");
+        let printed = self.output == Path::new("-");
+        match self.emit {
+            // What has an option of its own is all that was asked for.
+            None if printed && (self.map.is_some() || self.report.is_some()) => None,
+            None if self.target.is_some() || objects => Some(Emit::Obj),
+            None => Some(Emit::Logic),
+            given => given,
+        }
+    }
+
     /// The target that was asked for; `None` where nothing of it was said.
     fn target(&self) -> Result<Option<Target>, Failure> {
         let refused = |refused: BadTarget| Failure::hinted(refused.code, refused.message, refused.hint);
@@ -123,6 +152,7 @@ fn read_map(path: &Path) -> Result<EarlierLayout, Failure> {
 /// A program that is ready to be written in any form.
 struct Built<'a> {
     program: &'a Program,
+    interface: &'a Interface,
     /// The target that was asked for.
     target: Option<&'a Target>,
 }
@@ -136,9 +166,22 @@ impl Built<'_> {
             .map_err(|refused| Failure::hinted(refused.code, refused.message, refused.hint))
     }
 
+    /// The same for a file that is run elsewhere: without one that was asked for, any machine of this one's kind.
+    fn object_target(&self) -> Result<Target, Failure> {
+        match self.target {
+            Some(target) => Ok(target.clone()),
+            None => Target::new(&Target::host_triple(), None, None)
+                .map_err(|refused| Failure::hinted(refused.code, refused.message, refused.hint)),
+        }
+    }
+
     /// The bytes of a form.
     fn emitted(&self, emit: Emit) -> Result<Vec<u8>, Failure> {
         match emit {
+            Emit::Obj => {
+                let target = self.object_target()?;
+                object::build(self.program, self.interface, &target).map_err(|error| self.refused(&error))
+            }
             Emit::Logic => Ok(logic::print(self.program).into_bytes()),
             Emit::Clif => Ok(clif::text(self.program, &**self.target()?.isa()).into_bytes()),
             Emit::Asm => {
@@ -148,6 +191,16 @@ impl Built<'_> {
                 listing.map(String::into_bytes).map_err(|reason| Failure::new(Code::CannotCompile, reason))
             }
         }
+    }
+
+    /// What the object costs, as a table, or in JSON for a file that is named so.
+    fn report(&self, path: &Path) -> Result<String, Failure> {
+        let target = self.object_target()?;
+        let object = object::assemble(self.program, self.interface, &target).map_err(|error| self.refused(&error))?;
+        let report = report::report(self.program, &object, &target)
+            .map_err(|reason| Failure::new(Code::CannotCompile, reason))?;
+        let json = path.extension().is_some_and(|extension| extension == "json");
+        Ok(if json { report.json() } else { report.table() })
     }
 
     /// That there is no code, with the rung that is to blame.
@@ -164,7 +217,10 @@ impl Built<'_> {
                 )
             }
             CompileError::Chunk { .. } => failure("the interpreter runs it: `rung run --engine interp`"),
-            CompileError::NoBackEnd(_) | CompileError::Memory(_) => Failure::new(error.code(), error.to_string()),
+            CompileError::TooLarge(_) => failure("split the program in two, and build each with a prefix of its own"),
+            CompileError::NoBackEnd(_) | CompileError::Object(_) | CompileError::Memory(_) => {
+                Failure::new(error.code(), error.to_string())
+            }
         }
     }
 }

@@ -40,6 +40,7 @@ use crate::diagnostic::Code;
 use crate::logic::{Binary, Op, Program, verify};
 use lower::Built;
 
+pub(super) use array::copy_is_called;
 pub use parallel::compile;
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
@@ -73,6 +74,10 @@ pub enum CompileError {
         /// What Cranelift says, or which limit of ours is passed.
         reason: String,
     },
+    /// The object cannot be written.
+    Object(String),
+    /// Code or image are beyond the reach of the target's calls and addresses; the message says by how much.
+    TooLarge(String),
     /// No executable memory was to be had.
     Memory(std::io::Error),
 }
@@ -87,6 +92,8 @@ impl fmt::Display for CompileError {
             Self::Chunk { sections, reason } => {
                 write!(f, "sections {} to {} cannot be compiled: {reason}", sections.start, sections.end)
             }
+            Self::Object(reason) => write!(f, "no object can be written: {reason}"),
+            Self::TooLarge(reason) => f.write_str(reason),
             Self::Memory(error) => write!(f, "no executable memory: {error}"),
         }
     }
@@ -96,7 +103,9 @@ impl std::error::Error for CompileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Memory(error) => Some(error),
-            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } => None,
+            Self::NoBackEnd(_) | Self::NeedsFpu { .. } | Self::Chunk { .. } | Self::Object(_) | Self::TooLarge(_) => {
+                None
+            }
         }
     }
 }
@@ -106,7 +115,8 @@ impl CompileError {
     pub fn code(&self) -> Code {
         match self {
             Self::NeedsFpu { .. } => Code::NeedsFpu,
-            Self::NoBackEnd(_) | Self::Chunk { .. } | Self::Memory(_) => Code::CannotCompile,
+            Self::TooLarge(_) => Code::TooLargeForTarget,
+            Self::NoBackEnd(_) | Self::Chunk { .. } | Self::Object(_) | Self::Memory(_) => Code::CannotCompile,
         }
     }
 }
@@ -150,6 +160,8 @@ pub struct Chunk {
     pub alignment: u32,
     /// Offsets into the image, in bytes, of the pointers that it takes.
     pub bases: [u32; BASES],
+    /// How many of those pointers the code looks at, the first ones.
+    pub used_bases: usize,
     /// Whether it takes a pointer to the table of helpers, behind the last base.
     pub calls_helpers: bool,
     /// Where in the code a section's instructions begin, in the order of the code: `(offset, section)`. A section
@@ -157,17 +169,18 @@ pub struct Chunk {
     pub marks: Vec<(u32, usize)>,
 }
 
-/// The settings that made the fastest code and the quickest compile; they hold for every target.
+/// The settings that made the fastest code and the quickest compile; they hold for every target. Chunks hold no address
+/// of anything; whether other functions find theirs in a table that the linker makes can be chosen.
 ///
 /// # Errors
 /// When this Cranelift knows one of them no longer.
-pub fn flags() -> Result<settings::Flags, SetError> {
+pub fn flags(addresses_by_table: bool) -> Result<settings::Flags, SetError> {
     let mut builder = settings::builder();
     // `speed` makes larger code here and undoes the sinking of loads; the passes over logic do its work.
     builder.set("opt_level", "none")?;
     builder.set("regalloc_algorithm", "backtracking")?;
     builder.set("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" })?;
-    builder.set("is_pic", "false")?;
+    builder.set("is_pic", if addresses_by_table { "true" } else { "false" })?;
     builder.set("unwind_info", "false")?;
     builder.set("enable_probestack", "false")?;
     builder.set("machine_code_cfg_info", "false")?;
@@ -208,7 +221,7 @@ impl<'a> Compiler<'a> {
     /// # Errors
     /// [`CompileError::Chunk`] when Cranelift's limits or [`ALIVE`] are passed.
     pub fn chunk(&mut self, sections: Range<usize>) -> Result<Chunk, CompileError> {
-        let Built { bases, alive } = self.build(sections.clone());
+        let Built { bases, used_bases, alive } = self.build(sections.clone());
         let refused = |reason: String| CompileError::Chunk { sections: sections.clone(), reason };
         if alive > ALIVE {
             return Err(refused(format!("{alive} values are needed at one time, and at most {ALIVE} may be")));
@@ -229,7 +242,7 @@ impl<'a> Compiler<'a> {
         let alignment = self.isa.function_alignment().minimum.max(compiled.buffer.alignment);
         let code = compiled.code_buffer().to_vec();
         let calls_helpers = calls_helpers(self.program, sections.clone());
-        Ok(Chunk { sections, code, instruction_bytes, alignment, bases, calls_helpers, marks })
+        Ok(Chunk { sections, code, instruction_bytes, alignment, bases, used_bases, calls_helpers, marks })
     }
 
     /// Makes the function of a chunk in `self.context`.
@@ -259,7 +272,7 @@ fn calls_helpers(program: &Program, sections: Range<usize>) -> bool {
     let mut instructions = sections.flat_map(|section| &program.instructions[program.section_range(section)]);
     instructions.any(|instruction| match instruction.op {
         Op::Call(..) => true,
-        Op::CopyArray(to, ..) => array::copy_is_called(program, to),
+        Op::CopyArray(to, ..) => copy_is_called(program, to),
         _ => false,
     })
 }
@@ -325,8 +338,15 @@ pub(crate) fn heading(program: &Program, section: usize, comment: &str) -> Strin
 struct Target {
     /// Whether the low byte of a 4-byte load at any address is the byte there, and the load can be part of AND and OR.
     wide_loads: bool,
-    /// Whether a select, and a rotation, becomes a branch, so that masks are wanted.
+    /// Whether a select becomes a branch, so that masks are wanted.
     select_branches: bool,
+    /// Whether rotations are made of shifts: Cranelift's would branch, or be no shorter.
+    rotates_by_shifts: bool,
+    /// Whether a BOOL is held in 64 bits, all of which count, so that a mask is one instruction away. Else it is the low
+    /// byte of what holds it.
+    whole_bools: bool,
+    /// Bits of a constant, with its sign, that fit into the instruction that uses it, or into one more.
+    short_constant: u32,
     /// Whether 16 bytes can be moved at a time.
     wide_moves: bool,
     /// How far below and above a pointer an access is short.
@@ -335,19 +355,43 @@ struct Target {
 }
 
 impl Target {
-    const RISCV64: Self =
-        Self { wide_loads: false, select_branches: true, wide_moves: false, below: 2048, above: 2047 };
+    const RISCV64: Self = Self {
+        wide_loads: false,
+        select_branches: true,
+        rotates_by_shifts: true,
+        whole_bools: true,
+        short_constant: 12,
+        wide_moves: false,
+        below: 2048,
+        above: 2047,
+    };
+
+    const OTHER: Self = Self {
+        wide_loads: false,
+        select_branches: false,
+        rotates_by_shifts: false,
+        whole_bools: false,
+        short_constant: 17,
+        wide_moves: false,
+        below: 0,
+        above: 4095,
+    };
 
     fn of(isa: &dyn TargetIsa) -> Self {
+        let has = |name: &str| isa.isa_flags().iter().any(|flag| flag.name == name && flag.as_bool() == Some(true));
         match isa.triple().architecture {
             Architecture::X86_64 => {
-                Self { wide_loads: true, select_branches: false, wide_moves: true, below: 128, above: 127 }
+                Self { wide_loads: true, wide_moves: true, short_constant: 64, below: 128, above: 127, ..Self::OTHER }
             }
-            Architecture::Riscv64(_) => Self::RISCV64,
-            Architecture::Aarch64(_) => {
-                Self { wide_loads: false, select_branches: false, wide_moves: true, below: 0, above: 4095 }
-            }
-            _ => Self { wide_loads: false, select_branches: false, wide_moves: false, below: 0, above: 4095 },
+            Architecture::Riscv64(_) => Self { select_branches: !has("has_zicond"), ..Self::RISCV64 },
+            Architecture::Aarch64(_) => Self { wide_moves: true, ..Self::OTHER },
+            _ => Self::OTHER,
         }
+    }
+
+    /// Whether a constant takes instructions of its own, so that it is worth to be kept in a register.
+    fn is_long(&self, bits: u64) -> bool {
+        let least = 1i64.checked_shl(self.short_constant - 1).unwrap_or(0);
+        self.short_constant < 64 && !(-least..least).contains(&bits.cast_signed())
     }
 }

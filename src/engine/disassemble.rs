@@ -25,14 +25,38 @@ pub struct Line {
     pub calls: bool,
 }
 
-/// Decodes code for a target, up to the first bytes that are no instruction.
+/// Major opcodes of RISC-V that hold arithmetic and nothing that jumps or touches memory: OP-IMM, OP-IMM-32, OP, OP-32. The
+/// extensions that Capstone does not know add to these.
+const ARITHMETIC: [u8; 4] = [0x13, 0x1B, 0x33, 0x3B];
+
+/// Decodes code for a target, up to the first bytes that are no instruction. Arithmetic of RISC-V that the disassembler
+/// does not know is shown as its number.
 ///
 /// # Errors
 /// When the disassembler does not know the target.
 pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
     let capstone = decoder(target)?;
-    let instructions = capstone.disasm_all(code, 0).map_err(|error| error.to_string())?;
-    let mut lines = Vec::with_capacity(instructions.len());
+    let mut lines = Vec::new();
+    let mut at = 0;
+    while at < code.len() {
+        decode(&capstone, &code[at..], at as u64, &mut lines)?;
+        at = lines.last().map_or(0, |line: &Line| usize::try_from(line.offset).unwrap_or(0) + line.bytes.len());
+        match (&code[at..], target.architecture) {
+            ([first, b, c, d, ..], Architecture::Riscv64(_)) if ARITHMETIC.contains(&(first & 0x7F)) => {
+                let bytes = [*first, *b, *c, *d];
+                let text = format!(".insn {:#010x}", u32::from_le_bytes(bytes));
+                lines.push(Line { offset: at as u64, bytes: bytes.to_vec(), text, jumps: false, calls: false });
+                at += bytes.len();
+            }
+            _ => break,
+        }
+    }
+    Ok(lines)
+}
+
+/// Adds what can be decoded.
+fn decode(capstone: &Capstone, code: &[u8], offset: u64, lines: &mut Vec<Line>) -> Result<(), String> {
+    let instructions = capstone.disasm_all(code, offset).map_err(|error| error.to_string())?;
     for instruction in instructions.iter() {
         let detail = capstone.insn_detail(instruction).map_err(|error| error.to_string())?;
         let is_of = |group| detail.groups().contains(&InsnGroupId(u8::try_from(group).unwrap_or_default()));
@@ -47,7 +71,7 @@ pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
             calls: is_of(CS_GRP_CALL),
         });
     }
-    Ok(lines)
+    Ok(())
 }
 
 fn decoder(target: &Triple) -> Result<Capstone, String> {

@@ -97,7 +97,7 @@ impl Target {
     pub fn host() -> Result<Self, BadTarget> {
         let unknown = |reason: String| BadTarget::unknown(format!("no code for this machine: {reason}"), NO_BACK_END);
         let builder = cranelift_native::builder().map_err(|reason| unknown(reason.to_owned()))?;
-        let flags = clif::flags().map_err(|error| unknown(error.to_string()))?;
+        let flags = clif::flags(false).map_err(|error| unknown(error.to_string()))?;
         let isa = builder.finish(flags).map_err(|error| unknown(error.to_string()))?;
         Ok(Self { isa, floats: Floats::Double, elf_flags: None, extensions: "all that this processor has".to_owned() })
     }
@@ -126,7 +126,9 @@ impl Target {
             LookupError::Unsupported => BadTarget::unknown(format!("there is no back end for `{triple}`"), EXAMPLES),
         })?;
         let refused = |reason: String| BadTarget::isa(format!("no code for `{triple}`: {reason}"), EXAMPLES);
-        let flags = clif::flags().map_err(|error| refused(error.to_string()))?;
+        // Mach-O has no short way to the address of data but by its table of them.
+        let by_table = triple.binary_format == BinaryFormat::Macho && triple.architecture == Architecture::X86_64;
+        let flags = clif::flags(by_table).map_err(|error| refused(error.to_string()))?;
         let mut enable = |setting: &str| builder.enable(setting).map_err(|error| refused(error.to_string()));
         let (floats, elf_flags, extensions) = match triple.architecture {
             Architecture::Riscv64(architecture) => {
@@ -199,8 +201,10 @@ fn parse(text: &str) -> Result<Triple, BadTarget> {
         // Bare metal: what every tool there takes.
         (BinaryFormat::Unknown, _) => triple.binary_format = BinaryFormat::Elf,
         (BinaryFormat::Elf, _) => {}
-        (BinaryFormat::Macho | BinaryFormat::Coff, Architecture::X86_64 | Architecture::Aarch64(_)) => {}
-        _ => return Err(unknown("objects are ELF, and of x86-64 and AArch64 also Mach-O and COFF")),
+        (BinaryFormat::Macho, Architecture::X86_64 | Architecture::Aarch64(_)) => {}
+        // Of AArch64, the writer of objects has no addresses in COFF.
+        (BinaryFormat::Coff, Architecture::X86_64) => {}
+        _ => return Err(unknown("objects are ELF, and of x86-64 and AArch64 also Mach-O, and of x86-64 also COFF")),
     }
     Ok(triple)
 }

@@ -45,6 +45,12 @@ impl Turn {
         Self { periodic: task.interval.zip(task.due.map(|slot| layout.slot(slot).offset)) }
     }
 
+    /// The interval in nanoseconds, above 0, and the offset in the image where it lies when the task is due next; `None`
+    /// of one that always is. For code that does what [`Turn::take`] does.
+    pub fn periodic(self) -> Option<(i64, u32)> {
+        self.periodic
+    }
+
     /// Whether the task runs in the round at `now`. If so, the image is told when it is due next: at the next multiple of
     /// its interval, however many have passed.
     ///

@@ -8,7 +8,7 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 
 use super::MOVED;
-use super::lower::{Lowering, holder};
+use super::lower::Lowering;
 use crate::elementary::Elementary;
 use crate::engine::helpers;
 use crate::logic::{Array, ArrayId, Program, ValueId};
@@ -39,7 +39,7 @@ impl Lowering<'_, '_> {
     pub(super) fn load_indexed(&mut self, array: ArrayId, index: ValueId) -> Value {
         let Element { ty, exists, pointer, way } = self.element(self.program.layout.array(array), index);
         let value = self.read(ty, pointer, way);
-        let default = self.integer_constant(holder(ty), 0);
+        let default = self.integer_constant(self.holder(ty), 0);
         self.choose(exists, value, default)
     }
 
@@ -112,7 +112,7 @@ impl Lowering<'_, '_> {
 }
 
 /// Whether a copy to an array is a call of a helper.
-pub(super) fn copy_is_called(program: &Program, to: ArrayId) -> bool {
+pub(in crate::engine) fn copy_is_called(program: &Program, to: ArrayId) -> bool {
     size(program, to) > MOVED
 }
 

@@ -183,7 +183,7 @@ impl Lowering<'_, '_> {
 
     /// The amount counts modulo the width, which is what Cranelift's rotations do.
     fn rotate(&mut self, op: Binary, ty: Elementary, a: Value, amount: Value) -> Value {
-        if self.target.select_branches {
+        if self.target.rotates_by_shifts {
             return self.rotate_by_shifts(op, ty, a, amount);
         }
         let exact = match ty.size() {

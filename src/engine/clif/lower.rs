@@ -3,11 +3,11 @@
 //! A load is made where its value is used, so that it becomes part of the instruction that uses it, and at the
 //! latest before its slot is stored. All else is made in order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{Function, InstBuilder, MemFlagsData, SigRef, Type, Value, types};
+use cranelift_codegen::ir::{Function, InstBuilder, InstructionData, MemFlagsData, Opcode, SigRef, Type, Value, types};
 use cranelift_codegen::isa::TargetIsa;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
@@ -20,6 +20,8 @@ use crate::logic::{Array, Binary, Compare, Instruction, Op, Program, SlotId, Una
 pub(super) struct Built {
     /// The offsets of the pointers that it takes.
     pub(super) bases: [u32; BASES],
+    /// How many of them are used.
+    pub(super) used_bases: usize,
     /// The most values that wait for a use at one time.
     pub(super) alive: usize,
 }
@@ -33,7 +35,7 @@ pub(super) fn chunk(
     function: &mut Function,
     context: &mut FunctionBuilderContext,
 ) -> Built {
-    let bases = place::bases(program, sections.clone(), target);
+    let (bases, used_bases) = place::bases(program, sections.clone(), target);
     let mut builder = FunctionBuilder::new(function, context);
     let block = builder.create_block();
     builder.append_block_params_for_function_params(block);
@@ -49,6 +51,8 @@ pub(super) fn chunk(
     let now = params[1];
     let mut pointers = [(0, params[0]); BASES];
     for (index, pointer) in pointers.iter_mut().enumerate() {
+        // What is not used stays away, so that nothing is reached from it.
+        let index = if index < used_bases { index } else { 0 };
         *pointer = (bases[index], params[if index == 0 { 0 } else { index + 1 }]);
     }
     let mut lowering = Lowering {
@@ -63,6 +67,7 @@ pub(super) fn chunk(
         copy_signature: None,
         held: vec![None; end - first],
         uses,
+        constants: HashMap::new(),
         alive: 0,
         most_alive: 0,
         pending: BTreeMap::new(),
@@ -71,6 +76,7 @@ pub(super) fn chunk(
     };
     for section in sections {
         lowering.section = section;
+        lowering.constants.clear();
         lowering.builder.set_srcloc(location_of(section));
         for index in program.section_range(section) {
             lowering.instruction(index, program.instructions[index]);
@@ -78,7 +84,7 @@ pub(super) fn chunk(
     }
     lowering.builder.ins().return_(&[]);
     lowering.builder.finalize(isa.frontend_config());
-    Built { bases, alive: lowering.most_alive }
+    Built { bases, used_bases, alive: lowering.most_alive }
 }
 
 pub(super) struct Lowering<'a, 'f> {
@@ -100,6 +106,8 @@ pub(super) struct Lowering<'a, 'f> {
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
     uses: Vec<u32>,
+    /// Constants that the section has made and may use again.
+    constants: HashMap<(Type, u64), Value>,
     /// How many values are held that have a use to come, now and at most.
     alive: usize,
     most_alive: usize,
@@ -216,7 +224,7 @@ impl Lowering<'_, '_> {
         }
         let Instruction { ty, op } = self.program.instructions[id.index()];
         match op {
-            Op::Constant(bits) => self.integer_constant(holder(ty), bits),
+            Op::Constant(bits) => self.shared_constant(self.holder(ty), bits),
             Op::Load(slot) => {
                 let (value, wide) = load(self, slot);
                 // A wide load costs nothing where it is used, and a register where it is kept.
@@ -239,6 +247,24 @@ impl Lowering<'_, '_> {
             | Op::StoreIndexed(..)
             | Op::CopyArray(..) => unreachable!("operands come before, are no stores, and only the above are late"),
         }
+    }
+
+    /// What holds a value of a type that was read or is constant.
+    pub(super) fn holder(&self, ty: Elementary) -> Type {
+        if ty == Elementary::Bool && self.target.whole_bools { types::I64 } else { holder(ty) }
+    }
+
+    /// The same as [`Lowering::integer_constant`], but made once a section where it takes several instructions.
+    fn shared_constant(&mut self, ty: Type, bits: u64) -> Value {
+        if !self.target.is_long(bits) {
+            return self.integer_constant(ty, bits);
+        }
+        if let Some(value) = self.constants.get(&(ty, bits)) {
+            return *value;
+        }
+        let value = self.integer_constant(ty, bits);
+        self.constants.insert((ty, bits), value);
+        value
     }
 
     /// Bits of a type as a constant.
@@ -289,6 +315,7 @@ impl Lowering<'_, '_> {
         let (flags, signed) = (MemFlagsData::trusted(), ty.is_signed());
         let ins = self.builder.ins();
         match ty.size() {
+            1 if ty == Elementary::Bool && self.target.whole_bools => ins.uload8(types::I64, flags, pointer, way),
             1 if signed => ins.sload8(types::I32, flags, pointer, way),
             1 => ins.uload8(types::I32, flags, pointer, way),
             2 if signed => ins.sload16(types::I32, flags, pointer, way),
@@ -365,10 +392,10 @@ impl Lowering<'_, '_> {
         }
     }
 
-    /// A BOOL as 8 bits, all of which count.
+    /// A BOOL of which all bits count: 8, or 64 where all have as many.
     pub(super) fn flag(&mut self, id: ValueId) -> Value {
         let value = self.value(id);
-        self.byte_of(value)
+        if self.target.whole_bools { value } else { self.byte_of(value) }
     }
 
     fn bool_binary(&mut self, op: Binary, a: ValueId, b: ValueId) -> Value {
@@ -381,7 +408,14 @@ impl Lowering<'_, '_> {
                     (Some(inner), None) => (b, Some(inner)),
                     (None, None) => (a, None),
                 };
-                if let Some(inner) = inverted {
+                if let Some(inner) = inverted
+                    && self.target.whole_bools
+                {
+                    // Of 0 and 1 the same as `inner < kept`, which is one instruction without Zbb, too.
+                    let (inner, kept) = self.alike(inner, kept);
+                    let less = self.builder.ins().icmp(IntCC::UnsignedLessThan, inner, kept);
+                    self.truth(less)
+                } else if let Some(inner) = inverted {
                     let (inner, kept) = self.alike(inner, kept);
                     let inner = self.builder.ins().bnot(inner);
                     self.builder.ins().band(kept, inner)
@@ -443,24 +477,48 @@ impl Lowering<'_, '_> {
             Compare::GreaterOrEqual => IntCC::UnsignedGreaterThanOrEqual,
         };
         let (a, b) = if ty == Elementary::Bool { (self.flag(a), self.flag(b)) } else { (self.value(a), self.value(b)) };
-        self.builder.ins().icmp(condition, a, b)
+        let holds = self.builder.ins().icmp(condition, a, b);
+        self.truth(holds)
     }
 
-    /// `a` where the 8 bits of `condition` are not zero, else `b`; never a branch.
+    /// What a comparison says, as a BOOL.
+    pub(super) fn truth(&mut self, holds: Value) -> Value {
+        if self.target.whole_bools { self.builder.ins().uextend(types::I64, holds) } else { holds }
+    }
+
+    /// `a` where the bits of `condition`, a comparison or a [`Lowering::flag`], are not zero, else `b`; never a branch.
     pub(super) fn choose(&mut self, condition: Value, a: Value, b: Value) -> Value {
         if !self.target.select_branches {
             return self.builder.ins().select(condition, a, b);
         }
         let ty = self.builder.func.dfg.value_type(a);
-        let one = if ty == types::I8 { condition } else { self.builder.ins().uextend(ty, condition) };
+        let one = match self.builder.func.dfg.value_type(condition) {
+            same if same == ty => condition,
+            wide if wide.bits() > ty.bits() => self.builder.ins().ireduce(ty, condition),
+            _ => self.builder.ins().uextend(ty, condition),
+        };
+        if self.is_zero(a) {
+            let mask = self.builder.ins().iadd_imm_s(one, -1);
+            return self.builder.ins().band(b, mask);
+        }
         let mask = self.builder.ins().ineg(one);
+        if self.is_zero(b) {
+            return self.builder.ins().band(a, mask);
+        }
         let differ = self.builder.ins().bxor(a, b);
         let chosen = self.builder.ins().band(differ, mask);
         self.builder.ins().bxor(b, chosen)
     }
+
+    /// Whether a value is seen to be 0.
+    fn is_zero(&self, value: Value) -> bool {
+        let dfg = &self.builder.func.dfg;
+        let made = dfg.value_def(value).inst().map(|inst| dfg.insts[inst]);
+        matches!(made, Some(InstructionData::UnaryImm { opcode: Opcode::Iconst, imm }) if imm.bits() == 0)
+    }
 }
 
-/// What holds a value of a type: BOOL in 32 bits (or 8), integers in 32 or 64 with their sign or zeros above.
+/// What holds a value of a type other than BOOL: 32 or 64 bits, with the sign or zeros above.
 pub(super) fn holder(ty: Elementary) -> Type {
     if ty.size() == 8 { types::I64 } else { types::I32 }
 }

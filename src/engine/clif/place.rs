@@ -12,17 +12,20 @@ const LATELY: usize = 96;
 /// Bytes that a wide load of a BOOL reads.
 const WIDE: u32 = 4;
 
-/// Chooses the pointers that bring the most accesses of a chunk within short reach.
-pub(super) fn bases(program: &Program, sections: Range<usize>, target: Target) -> [u32; BASES] {
+/// Chooses the pointers that bring the most accesses of a chunk within short reach, and says how many it took. One that
+/// can be the image itself is.
+pub(super) fn bases(program: &Program, sections: Range<usize>, target: Target) -> ([u32; BASES], usize) {
     let mut offsets: Vec<u32> = accesses(program, sections).map(|(_, slot)| program.layout.slot(slot).offset).collect();
     offsets.sort_unstable();
-    let mut bases = [0; BASES];
+    let (mut bases, mut used) = ([0; BASES], 0);
     for base in &mut bases {
         let Some(window) = densest(&offsets, target.below + target.above) else { break };
-        *base = offsets[window.start].saturating_add(target.below).min(program.layout.size());
+        let highest = offsets[window.start].saturating_add(target.below).min(program.layout.size());
+        *base = if offsets[window.end - 1] <= target.above { 0 } else { highest };
         offsets.drain(window);
+        used += 1;
     }
-    bases
+    (bases, used)
 }
 
 /// The most offsets that lie within `span` bytes, as a range of the sorted `offsets`.

@@ -125,7 +125,8 @@ impl Lowering<'_, '_> {
         };
         let (a, b) = (self.value(a), self.value(b));
         let (a, b) = (self.float_of(ty, a), self.float_of(ty, b));
-        self.builder.ins().fcmp(condition, a, b)
+        let holds = self.builder.ins().fcmp(condition, a, b);
+        self.truth(holds)
     }
 
     pub(super) fn convert(&mut self, id: ValueId, to: Elementary) -> Value {
@@ -135,7 +136,11 @@ impl Lowering<'_, '_> {
         }
         let value = if from == Elementary::Bool {
             let flag = self.flag(id);
-            self.builder.ins().uextend(types::I32, flag)
+            if self.target.whole_bools {
+                self.builder.ins().ireduce(types::I32, flag)
+            } else {
+                self.builder.ins().uextend(types::I32, flag)
+            }
         } else {
             self.value(id)
         };
@@ -144,7 +149,8 @@ impl Lowering<'_, '_> {
                 // The two zeros differ in sign only; a NaN is not zero.
                 let value = if from.is_real() { self.without_sign(from, value) } else { value };
                 let zero = self.integer_constant(holder(from), 0);
-                self.builder.ins().icmp(IntCC::NotEqual, value, zero)
+                let holds = self.builder.ins().icmp(IntCC::NotEqual, value, zero);
+                self.truth(holds)
             }
             (false, false) => {
                 let value = match (from.size() == 8, to.size() == 8) {

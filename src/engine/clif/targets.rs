@@ -19,15 +19,11 @@ const TARGETS: &[(&str, &[&str])] = &[
     ("riscv64gc-unknown-linux-gnu", &["has_zicond", "has_zba", "has_zbb", "has_zbs"]),
 ];
 
-/// Major opcodes of RISC-V that hold arithmetic and no branch: OP-IMM, OP-IMM-32, OP, OP-32. The extensions that Capstone
-/// does not know add to these.
-const ARITHMETIC: &[u8] = &[0x13, 0x1B, 0x33, 0x3B];
-
 fn isa(triple: &str, features: &[&str]) -> OwnedTargetIsa {
     let triple: Triple = triple.parse().expect("a known triple");
     let mut builder = isa::lookup(triple).expect("a back end for every target of the table");
     features.iter().for_each(|feature| builder.enable(feature).expect("a feature of this target"));
-    builder.finish(flags().expect("known flags")).expect("settings that fit")
+    builder.finish(flags(false).expect("known flags")).expect("settings that fit")
 }
 
 /// Whether an operation is listed for an architecture.
@@ -42,26 +38,13 @@ fn branches(program: &Program, isa: &OwnedTargetIsa, decoded: &mut usize) -> Vec
     let mut branches = Vec::new();
     for sections in program.chunks() {
         let chunk = compiler.chunk(sections).expect("code");
-        let mut code = &chunk.code[..chunk.instruction_bytes];
-        while !code.is_empty() {
-            let lines = disassemble::lines(code, isa.triple()).expect("a decoder");
-            let bytes: usize = lines.iter().map(|line| line.bytes.len()).sum();
-            code = &code[bytes..];
-            // What Capstone does not know.
-            if let [first, _, _, _, rest @ ..] = code {
-                let unknown = format!("{}, {}: {:02x?}", isa.triple(), program.name, &code[..4]);
-                assert!(
-                    isa.triple().architecture.to_string() == "riscv64gc" && ARITHMETIC.contains(&(first & 0x7F)),
-                    "{unknown}"
-                );
-                code = rest;
-            } else {
-                assert!(code.is_empty(), "{}, {}: half an instruction", isa.triple(), program.name);
-            }
-            *decoded += lines.len();
-            let branch = |line: &Line| line.jumps && !(line.calls && chunk.calls_helpers);
-            branches.extend(lines.into_iter().filter(branch).map(|line| line.text));
-        }
+        let code = &chunk.code[..chunk.instruction_bytes];
+        let lines = disassemble::lines(code, isa.triple()).expect("a decoder");
+        let bytes: usize = lines.iter().map(|line| line.bytes.len()).sum();
+        assert_eq!(bytes, code.len(), "{}, {}: not all could be decoded", isa.triple(), program.name);
+        *decoded += lines.len();
+        let branch = |line: &Line| line.jumps && !(line.calls && chunk.calls_helpers);
+        branches.extend(lines.into_iter().filter(branch).map(|line| line.text));
     }
     branches
 }
