@@ -187,6 +187,22 @@ fn results_are_a_unit_in_the_last_place_from_those_of_another_library() {
     }
 }
 
+#[test]
+fn small_exponents_are_products_quotients_and_roots() {
+    let mut rng = Pcg64::seed_from_u64(5);
+    for x in special().into_iter().chain((0..2000).map(|_| random(&mut rng))) {
+        let power =
+            |exponent| evaluate::call(Helper::Power, Elementary::Lreal, x.to_bits(), Some(f64::to_bits(exponent)));
+        let same =
+            |bits, expected: f64| f64::from_bits(bits).is_nan() && expected.is_nan() || bits == expected.to_bits();
+        assert!(same(power(1.0), x), "{x:?}");
+        assert!(same(power(2.0), x * x), "{x:?}");
+        assert!(same(power(-1.0), 1.0 / x), "{x:?}");
+        let root = if x == f64::NEG_INFINITY { f64::INFINITY } else { (x + 0.0).sqrt() };
+        assert!(same(power(0.5), root), "{x:?}");
+    }
+}
+
 /// Results that were computed with 300 bits.
 #[test]
 fn powers_with_large_exponents_are_right() {

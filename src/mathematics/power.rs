@@ -100,6 +100,13 @@ pub fn pow<A: Arithmetic>(m: A, x: A::Real, y: A::Real) -> A::Real {
     let held_high = cut(m, held);
     let value = exp2(m, held_high * log_high, (held - held_high) * log_high + held * log_low);
 
+    // Exponents for which there is a better way; what a negative number changes comes below.
+    let short = |exponent: f64, short: A::Real, value: A::Real| m.choose(m.equal(y, m.real(exponent)), short, value);
+    let value = short(0.5, m.root(base), value);
+    let value = short(2.0, base * base, value);
+    let value = short(1.0, base, value);
+    let value = short(-1.0, one / base, value);
+
     // Of 0 and infinity.
     let shrinks = m.less(y, zero);
     let is_zero = m.equal(base, zero);

@@ -1,5 +1,6 @@
 //! All chunks of a program, compiled side by side on all cores. The code does not depend on how many there are.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{Chunk, CompileError, Compiler};
@@ -11,10 +12,17 @@ use crate::logic::Program;
 /// # Errors
 /// The error of the first chunk that has one; or that the program computes with reals and the target cannot.
 pub fn compile(program: &Program, target: &Target) -> Result<Vec<Chunk>, CompileError> {
+    compile_some(program, &program.chunks(), target)
+}
+
+/// The code of some of the chunks of a verified program, in the order in which they are given.
+///
+/// # Errors
+/// As of [`compile`].
+pub fn compile_some(program: &Program, chunks: &[Range<usize>], target: &Target) -> Result<Vec<Chunk>, CompileError> {
     if let Some(section) = first_beyond(program, target.floats()) {
         return Err(CompileError::NeedsFpu { target: target.to_string(), section });
     }
-    let chunks = program.chunks();
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(chunks.len());
     let next = AtomicUsize::new(0);
     let work = || {
