@@ -165,9 +165,15 @@ fn number(index: &Expression) -> Option<String> {
 fn splice(program: &mut Program, small: &Program) -> Result<SlotId, Vec<Diagnostic>> {
     let old = &program.layout;
     let mut layout = LayoutBuilder::new();
-    old.slots().iter().for_each(|slot| drop(layout.slot(slot.clone())));
-    old.arrays().iter().for_each(|array| drop(layout.array(array.first, array.count)));
-    old.observed().iter().for_each(|one| layout.observe(one.name.clone(), one.slot));
+    for slot in old.slots() {
+        layout.slot(slot.clone());
+    }
+    for array in old.arrays() {
+        layout.array(array.first, array.count);
+    }
+    for observed in old.observed() {
+        layout.observe(observed.name.clone(), observed.slot);
+    }
     let number = old.slots().iter().filter(|slot| slot.name.starts_with("#assertion")).count();
     let names: HashMap<SlotId, &str> =
         small.layout.observed().iter().map(|observed| (observed.slot, observed.name.as_str())).collect();

@@ -109,7 +109,8 @@ fn tasks_with_intervals_run_in_all_lanes_or_in_none() {
     let mut rig = Rig::new(&program, 131);
     for scan in 0..200i64 {
         for lane in 0..131 {
-            let bit = |divisor: i64| Value::bool((scan * (lane as i64 + 1) / divisor) % 3 == 0);
+            let bit =
+                |divisor: i64| Value::bool((scan * (i64::try_from(lane).unwrap_or_default() + 1) / divisor) % 3 == 0);
             rig.set(lane, "quick.a", bit(50));
             rig.set(lane, "slowly.b", bit(170));
         }

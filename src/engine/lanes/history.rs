@@ -174,9 +174,9 @@ mod tests {
         agrees(&presets, &[5, 5, 5, 6, 7, 8, 30, 30, 1000, 1010, 1020, 1030]);
         agrees(&presets, &[1 << 62, 1 << 62, i64::MAX - 1, i64::MAX, i64::MAX]);
         let mut time = 0;
-        let irregular: Vec<i64> = (0..300i64)
+        let irregular: Vec<i64> = (0..300usize)
             .map(|scan| {
-                time += [0, 1, 1, 1, 7, 10, 10, 10, 400][(scan * scan % 17 % 9) as usize];
+                time += [0, 1, 1, 1, 7, 10, 10, 10, 400][scan * scan % 17 % 9];
                 time
             })
             .collect();

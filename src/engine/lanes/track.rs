@@ -178,7 +178,7 @@ impl Tracks {
     fn end_epoch(&mut self, plan: &Plan, history: &History) {
         let ended = epoch(history.last()) - 1;
         let highest = (history.last() - 1).checked_ilog2().map_or(0, |bit| bit as usize + 1);
-        while self.planes.len() < highest.max(ROW_BITS).min(PLANES) {
+        while self.planes.len() < highest.clamp(ROW_BITS, PLANES) {
             self.planes.push(vec![Word::ZEROS; plan.tracks.len()]);
         }
         // Differences look at what their latches held, and the latches are the first class.

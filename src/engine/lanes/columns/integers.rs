@@ -117,6 +117,8 @@ impl Columns {
         let signed = from.ty.is_signed();
         by_width!(self, from.ty, |of: T| {
             let values: &[T; LANES] = &of[from.index as usize];
+            #[expect(clippy::allow_attributes, reason = "the lint below fires for the widest only")]
+            #[allow(clippy::useless_conversion, reason = "one text for all widths")]
             if signed {
                 for lane in 0..LANES {
                     wide[lane] = i64::from(values[lane].signed()).cast_unsigned();
