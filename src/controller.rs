@@ -73,8 +73,11 @@ pub struct Settings {
 /// output lamp
 /// var    times : INT retain
 ///
-/// rung r10  switch delay:TON(PT := T#20ms) (lamp)
-/// rung r20  ^lamp {times := times + 1}
+/// rung r10
+///   switch delay:TON(PT := T#20ms) (lamp)
+///
+/// rung r20
+///   ^lamp {times := times + 1}
 /// ";
 /// let mut controller = Controller::load("lamp.rung", text)?;
 ///
@@ -114,10 +117,10 @@ impl Controller {
     /// ```
     /// use rung::{Controller, Error};
     ///
-    /// let wrong = b"program p  input a  output b  rung r10 a /c (b)";
+    /// let wrong = b"program p input a output b\nrung r10\n  a /c (b)";
     /// let Err(Error::Program(findings)) = Controller::load("p.rung", wrong) else { panic!("`c` is not declared") };
     /// assert_eq!(findings.diagnostics[0].code.to_string(), "R0301");
-    /// assert!(findings.to_string().contains("p.rung:1:43"), "{findings}");
+    /// assert!(findings.to_string().contains("p.rung:3:6"), "{findings}");
     /// ```
     pub fn load(name: impl Into<String>, bytes: &[u8]) -> Result<Self, Error> {
         Self::load_with(name, bytes, Settings::default())
@@ -240,7 +243,7 @@ impl Controller {
     /// by the rules of [`ToValue::to_value`].
     ///
     /// ```
-    /// # let mut controller = rung::Controller::load("p", b"program p input speed : INT, ratio : REAL")?;
+    /// # let mut controller = rung::Controller::load("p", b"program p input speed : INT input ratio : REAL")?;
     /// use rung::Error;
     ///
     /// controller.write("speed", 1500)?;
