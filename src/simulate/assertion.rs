@@ -165,8 +165,12 @@ fn number(index: &Expression) -> Option<String> {
 fn splice(program: &mut Program, small: &Program) -> Result<SlotId, Vec<Diagnostic>> {
     let old = &program.layout;
     let mut layout = LayoutBuilder::new();
-    old.slots().iter().for_each(|slot| drop(layout.slot(slot.clone())));
-    old.arrays().iter().for_each(|array| drop(layout.array(array.first, array.count)));
+    for slot in old.slots() {
+        layout.slot(slot.clone());
+    }
+    for array in old.arrays() {
+        layout.array(array.first, array.count);
+    }
     old.observed().iter().for_each(|one| layout.observe(one.name.clone(), one.slot));
     let number = old.slots().iter().filter(|slot| slot.name.starts_with("#assertion")).count();
     let names: HashMap<SlotId, &str> =
@@ -198,13 +202,11 @@ fn splice(program: &mut Program, small: &Program) -> Result<SlotId, Vec<Diagnost
     let first = count(program.instructions.len());
     let origins = count(program.origins.len());
     program.origins.extend(small.origins.iter().cloned());
-    program.sections.extend(
-        small.sections.iter().map(|section| Section {
-            origin: section.origin + origins,
-            end: section.end + first,
-            starts_chunk: section.starts_chunk,
-        }),
-    );
+    program.sections.extend(small.sections.iter().map(|section| Section {
+        origin: section.origin + origins,
+        end: section.end + first,
+        starts_chunk: section.starts_chunk,
+    }));
     program.tasks.push(Task { name: format!("assertion {number}"), ..Task::always(count(program.sections.len())) });
     program.instructions.extend(small.instructions.iter().map(|instruction| {
         let op = instruction.op.map_operands(|operand| ValueId(operand.0 + first));

@@ -153,6 +153,7 @@ fn a_lane_of_a_seed_gets_the_same_alone_as_among_others() {
         while simulation.step(&mut interpreter).is_some() {}
         assert_eq!(batch.image(lane).as_deref(), Ok(simulation.image()), "lane {lane}");
     }
-    let random = |seed| RandomInputs::new(&program.layout, seed, 0, &none).stimuli_of(0, CYCLE, 50, &Stimuli::default());
+    let random =
+        |seed| RandomInputs::new(&program.layout, seed, 0, &none).stimuli_of(0, CYCLE, 50, &Stimuli::default());
     assert_ne!(random(1), random(2));
 }

@@ -139,8 +139,7 @@ impl Run<'_> {
         let seed = self.arguments.seed.unwrap_or_default();
         let layout = &self.program.layout;
         let words = part.first() / WORD_LANES..part.first() / WORD_LANES + part.words();
-        let mut random: Vec<RandomInputs> =
-            words.map(|word| RandomInputs::new(layout, seed, word, given)).collect();
+        let mut random: Vec<RandomInputs> = words.map(|word| RandomInputs::new(layout, seed, word, given)).collect();
         let variables: Vec<Variable> = shown.iter().map(|(_, slot)| part.variable(*slot)).collect();
         let asserted: Vec<Variable> = self.assertions.iter().map(|one| part.variable(one.holds)).collect();
         let mut summaries: Vec<Summary> = variables.iter().map(|one| Summary::new(one.ty())).collect();
@@ -181,13 +180,7 @@ impl Run<'_> {
     }
 
     /// Prints the table, and says which assertion failed.
-    fn finish(
-        &self,
-        batch: &mut Batch,
-        seed: u64,
-        parts: &[Done],
-        shown: &[(Signal, SlotId)],
-    ) -> Result<(), Failure> {
+    fn finish(&self, batch: &mut Batch, seed: u64, parts: &[Done], shown: &[(Signal, SlotId)]) -> Result<(), Failure> {
         let mut summaries: Vec<Summary> = shown.iter().map(|(signal, _)| Summary::new(signal.ty())).collect();
         for part in parts {
             summaries.iter_mut().zip(&part.summaries).for_each(|(all, one)| all.join(one));

@@ -261,9 +261,7 @@ impl Columns {
             | Binary::ShiftRight
             | Binary::RotateLeft
             | Binary::RotateRight => {
-                self.each(to, |columns, lane| {
-                    evaluate::binary(op, to.ty, columns.get(a, lane), columns.get(b, lane))
-                });
+                self.each(to, |columns, lane| evaluate::binary(op, to.ty, columns.get(a, lane), columns.get(b, lane)));
             }
         }
     }

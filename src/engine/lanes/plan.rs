@@ -10,8 +10,8 @@ mod chunk;
 use std::collections::HashMap;
 
 use super::columns::{Column, Step};
-use super::track::ROW_BITS;
 use super::recognise::{Answer, Due, Leaf, Recognised, Tracked, recognise};
+use super::track::ROW_BITS;
 use crate::elementary::Elementary;
 use crate::logic::{Program, SlotId};
 

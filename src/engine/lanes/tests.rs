@@ -51,7 +51,8 @@ impl<'p> Rig<'p> {
             for (id, slot) in self.slots() {
                 let (found, expected) = (self.lanes.get(&self.group, lane, id), slot.read(image));
                 assert_eq!(
-                    found, expected,
+                    found,
+                    expected,
                     "`{}` of {} in lane {lane}, scan {} at {now} ns, which is {:?} in\n{}",
                     slot.name,
                     self.program.name,
