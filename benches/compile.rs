@@ -5,41 +5,94 @@
 mod workload;
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use rung::engine::clif::Chunk;
 use rung::engine::disassemble;
-use rung::engine::jit::{Jit, host_isa};
+use rung::engine::jit::{Edited, Jit, host_isa};
+use rung::logic::{Binary, Op, Program};
 use rung::opt;
 use workload::workload;
 
 fn compiles(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("compile");
     group.sample_size(10);
-    let target = host_isa().expect("a host with a back end").triple().clone();
     for rungs in [18, 1451, 20_000_u32] {
         let program = workload(rungs);
         group.throughput(Throughput::Elements(u64::from(rungs)));
         group.bench_function(format!("optimise/{rungs}"), |bencher| {
             bencher.iter_batched(|| program.clone(), opt::optimise, BatchSize::LargeInput);
         });
+        if rungs == 1451 {
+            for without in opt::PASSES {
+                let program = opt::optimise_with(program.clone(), |pass| pass.name != without.name);
+                eprintln!("{rungs} rungs without `{}`: {}", without.name, size(&program, rungs));
+            }
+        }
         let optimised = opt::optimise(program);
         group.bench_function(format!("jit/{rungs}"), |bencher| {
             bencher.iter(|| Jit::compile(black_box(&optimised)).expect("code for this machine"));
         });
-        let jit = Jit::compile(&optimised).expect("code for this machine");
-        let instructions: usize = jit
-            .chunks()
-            .iter()
-            .map(|chunk| {
-                disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).map_or(0, |lines| lines.len())
-            })
-            .sum();
-        let each = |count: usize| count as f64 / rungs as f64;
-        let bytes = jit.code_bytes();
-        eprintln!("{rungs} rungs: {:.1} bytes and {:.2} instructions a rung", each(bytes), each(instructions));
+        eprintln!("{rungs} rungs: {}", size(&optimised, rungs));
     }
     group.finish();
 }
 
-criterion_group!(benches, compiles);
+/// What a program is compiled to.
+fn size(program: &Program, rungs: u32) -> String {
+    let target = host_isa().expect("a host with a back end").triple().clone();
+    let jit = Jit::compile(program).expect("code for this machine");
+    let count = |chunk: &Chunk| {
+        disassemble::lines(&chunk.code[..chunk.instruction_bytes], &target).map_or(0, |lines| lines.len())
+    };
+    let instructions: usize = jit.chunks().iter().map(count).sum();
+    let each = |count: usize| count as f64 / f64::from(rungs);
+    format!("{:.1} bytes and {:.2} instructions a rung", each(jit.code_bytes()), each(instructions))
+}
+
+/// Compiling one rung of many again: from the changed logic to installed code, all chunks compared.
+fn edits(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("edit");
+    group.sample_size(20);
+    let rungs = 20_000;
+    let program = opt::optimise(workload(rungs));
+    let changed = edited_at(program.clone(), program.sections.len() / 2);
+    group.bench_function(format!("full/{rungs}"), |bencher| {
+        bencher.iter_batched(
+            || program.clone(),
+            |program| Edited::compile(program).expect("code for this machine"),
+            BatchSize::LargeInput,
+        );
+    });
+    let mut edited = Edited::compile(program.clone()).expect("code for this machine");
+    group.bench_function(format!("one rung/{rungs}"), |bencher| {
+        bencher.iter_custom(|edits| {
+            let mut spent = Duration::ZERO;
+            for edit in 0..edits {
+                let next = if edit % 2 == 0 { changed.clone() } else { program.clone() };
+                let start = Instant::now();
+                let update = edited.update(black_box(next)).expect("code for this machine");
+                spent += start.elapsed();
+                assert!(update.compiled <= 1, "{update:?}");
+            }
+            spent
+        });
+    });
+    group.finish();
+}
+
+/// The same program with another operation in one section.
+fn edited_at(mut program: Program, section: usize) -> Program {
+    let range = program.section_range(section);
+    let joins = |op: &Op| matches!(op, Op::Binary(Binary::And, ..));
+    let join = program.instructions[range].iter_mut().find(|instruction| joins(&instruction.op));
+    let join = join.expect("contacts in series");
+    if let Op::Binary(_, a, b) = join.op {
+        join.op = Op::Binary(Binary::Or, a, b);
+    }
+    program
+}
+
+criterion_group!(benches, compiles, edits);
 criterion_main!(benches);

@@ -2,8 +2,11 @@
 //!
 //! The tank is this program's; the pump is the ladder's. They meet at variables by name, ten times a simulated second.
 //!
-//! `cargo run --release --example embed` prints what they do in two minutes.
+//! `cargo run --release --example embed` prints what they do in three minutes.
 
+use std::error::Error;
+use std::io::{self, Write};
+use std::ops::Range;
 use std::time::Duration;
 
 use rung::Controller;
@@ -26,13 +29,15 @@ rung r10 \"between the floats the pump keeps doing what it does\"
 rung r20
   ^pump {starts := starts + 1}
 
-rung r30 \"water too high for too long, or more of it than the pump can take\"
-  [ high_float flood:TON(PT := too_high) | {inflow > 20.0} ] (alarm)
+rung r30 \"water too high for too long, or far more of it than the pump can take\"
+  [ high_float flood:TON(PT := too_high) | {inflow > 30.0} ] (alarm)
 ";
 
 /// Simulated time from one scan to the next.
 const CYCLE: Duration = Duration::from_millis(100);
-const SCANS: u32 = 1200;
+const SCANS: u32 = 1800;
+/// When it rains more than the pump can take.
+const STORM: Range<Duration> = Duration::from_secs(120)..Duration::from_secs(150);
 
 /// Water, and what is put into it.
 struct Tank {
@@ -51,32 +56,39 @@ impl Tank {
     }
 }
 
-#[expect(clippy::print_stdout, reason = "a command of its own")]
-fn main() -> Result<(), rung::Error> {
+fn main() -> Result<(), Box<dyn Error>> {
+    run(&mut io::stdout())
+}
+
+/// Runs tank and ladder side by side, and tells what the outputs do.
+pub(crate) fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let mut controller = Controller::load("tank.rung", LADDER.as_bytes())?;
-    println!("{}:", controller.name());
+    writeln!(out, "{}:", controller.name())?;
     for variable in controller.variables() {
-        println!("  {:<10} {:<5} {:?}", variable.name(), variable.ty(), variable.area());
+        writeln!(out, "  {:<10} {:<4}  {:?}", variable.name(), variable.ty().name(), variable.area())?;
     }
 
-    let mut tank = Tank { litres: 500.0 };
+    let mut tank = Tank { litres: 700.0 };
     let mut before = (false, false);
     for scan in 0..SCANS {
         let now = CYCLE * scan;
-        // A storm comes up after a minute.
-        let inflow = if now < Duration::from_secs(60) { 9.0 } else { 24.0 };
+        let inflow = if STORM.contains(&now) { 24.0 } else { 9.0 };
         controller.write("high_float", tank.litres > Tank::HIGH)?;
         controller.write("low_float", tank.litres > Tank::LOW)?;
         controller.write("inflow", inflow)?;
         controller.scan(now);
         let (pump, alarm) = (controller.read("pump")?, controller.read("alarm")?);
         if (pump, alarm) != before {
-            let on = |on| if on { "on" } else { "off" };
-            println!("{:>5.1} s  {:>4.0} l  pump {:<3}  alarm {}", now.as_secs_f64(), tank.litres, on(pump), on(alarm));
+            let (time, litres) = (now.as_secs_f64(), tank.litres);
+            writeln!(out, "{time:>5.1} s  {litres:>4.0} l  pump {}  alarm {}", word(pump), word(alarm))?;
             before = (pump, alarm);
         }
         tank.flow(inflow, pump, CYCLE);
     }
-    println!("the pump has started {} times", controller.read::<i64>("starts")?);
+    writeln!(out, "the pump has started {} times", controller.read::<i64>("starts")?)?;
     Ok(())
+}
+
+fn word(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
 }

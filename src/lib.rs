@@ -43,6 +43,7 @@ pub mod controller;
 pub mod diagnostic;
 pub mod draw;
 pub mod elementary;
+pub mod emit;
 pub mod engine;
 pub mod frontend;
 pub mod generate;

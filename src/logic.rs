@@ -10,6 +10,7 @@
 
 mod build;
 pub mod evaluate;
+pub mod execute;
 pub mod image;
 pub mod map;
 pub mod mathematics;
@@ -25,7 +26,7 @@ pub use build::Builder;
 pub use image::{Area, Array, ArrayId, Layout, LayoutBuilder, Slot, SlotId};
 pub use op::{Binary, Compare, Domain, Helper, Instruction, Op, Unary, ValueId};
 pub use parse::parse;
-pub use print::print;
+pub use print::{literal, print};
 pub use task::{Task, Turn};
 pub use verify::{Problem, verify};
 

@@ -4,11 +4,12 @@
 //! `observe` says which can be watched; `network`,
 //! `statement`, `call` and `expression` turn the rungs into primitives, element by element in the order of the drawing,
 //! with `place` for what is read and written and `guard` for what is not executed; `blocks` has each function block's rule,
-//! `functions` each function's. The code that comes out is naive on purpose: nothing here may simplify or reorder, that is
-//! for the passes.
+//! `functions` each function's; at last `arrange` lays the image out by use. The code that comes out is naive on purpose:
+//! nothing here may simplify or reorder, that is for the passes.
 
 mod aggregate;
 mod allocate;
+mod arrange;
 mod attempt;
 mod blocks;
 mod call;
@@ -63,7 +64,7 @@ pub fn lower(checked: &Checked, source: &Source, earlier: Option<&EarlierLayout>
         }
         lowering.logic.end_task(&task.name, task.interval, *due);
     }
-    Ok(lowering.logic.finish())
+    arrange::by_use(lowering.logic.finish(), earlier)
 }
 
 /// The state of lowering one program.

@@ -1,18 +1,27 @@
 //! The optimiser: an ordered list of small passes over logic.
 //!
 //! A pass is a pure function from a verified program to a verified one that leaves the same image after every scan,
-//! with the same layout, sections, origins and chunks. It must never move a value out of its chunk.
+//! with the same layout, tasks and origins. Only the first two change where sections and chunks end. None may ever move a
+//! value out of its chunk.
+//!
+//! In a debug build every pass is [checked](check) against the program that it was given.
 
+mod algebra;
+pub mod check;
+mod chunk;
+mod cut;
 mod fold;
 mod forward;
-mod gather;
+mod narrow;
+mod reduce;
 mod rewrite;
+mod share;
 mod simplify;
 mod sweep;
 #[cfg(test)]
 mod tests;
 
-use crate::logic::Program;
+use crate::logic::{Program, verify};
 
 /// One pass.
 #[derive(Clone, Copy, Debug)]
@@ -25,14 +34,41 @@ pub struct Pass {
 
 /// The passes, in order.
 pub const PASSES: &[Pass] = &[
+    Pass { name: "cut", run: cut::cut },
+    Pass { name: "chunk", run: chunk::chunk },
     Pass { name: "fold", run: fold::fold },
     Pass { name: "forward", run: forward::forward },
     Pass { name: "simplify", run: simplify::simplify },
-    Pass { name: "gather", run: gather::gather },
+    Pass { name: "narrow", run: narrow::narrow },
+    Pass { name: "reduce", run: reduce::reduce },
+    Pass { name: "share", run: share::share },
+    Pass { name: "algebra", run: algebra::algebra },
     Pass { name: "sweep", run: sweep::sweep },
 ];
 
 /// Runs every pass.
 pub fn optimise(program: Program) -> Program {
-    PASSES.iter().fold(program, |program, pass| (pass.run)(program))
+    optimise_with(program, |_| true)
 }
+
+/// Runs the passes that are wanted, so that one can see what another is good for.
+///
+/// # Panics
+/// In a debug build, when a pass changed what the program computes.
+pub fn optimise_with(program: Program, wanted: impl Fn(&Pass) -> bool) -> Program {
+    PASSES.iter().filter(|pass| wanted(pass)).fold(program, |program, pass| {
+        if !cfg!(debug_assertions) || program.instructions.len() > CHECKED {
+            return (pass.run)(program);
+        }
+        let after = (pass.run)(program.clone());
+        assert_eq!(verify(&after), Ok(()), "the pass `{}` breaks what it is given", pass.name);
+        if let Some(difference) = check::difference(&program, &after, IMAGES) {
+            panic!("the pass `{}` changes {difference}", pass.name);
+        }
+        after
+    })
+}
+
+/// Instructions up to which a debug build checks a pass, and on how many images.
+const CHECKED: usize = 20_000;
+const IMAGES: u64 = 2;

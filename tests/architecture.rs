@@ -63,6 +63,15 @@ fn engines_know_no_block_and_no_ladder() {
 }
 
 #[test]
+fn emitters_know_no_ladder_and_no_engine() {
+    let emitters: Vec<_> = naming("src", &["crate::ladder", "crate::check", "crate::lower", "crate::engine"], &[])
+        .into_iter()
+        .filter(|name| name.starts_with("src/emit"))
+        .collect();
+    assert_eq!(emitters, NONE);
+}
+
+#[test]
 fn front_ends_and_the_checker_look_only_backwards() {
     let later = ["crate::lower", "crate::logic", "crate::opt", "crate::engine"];
     let early: Vec<_> = naming("src", &later, &[])

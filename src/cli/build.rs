@@ -1,12 +1,15 @@
 //! `rung build`: a program as an object file, as logic, as Cranelift's intermediate form or as assembly of a target, and
 //! the map of its image.
 
+mod notes;
+
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use super::{Failure, Missing, duration, load_checked, read_source, write_whole};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::emit::{self, Notes};
 use crate::engine::clif::{self, CompileError};
 use crate::engine::target::{BadTarget, Target};
 use crate::engine::{disassemble, object, report};
@@ -15,6 +18,7 @@ use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
 use crate::opt::PASSES;
+use crate::source::{Source, Span};
 
 /// The stage before any pass, for `--after`.
 const LOWER: &str = "lower";
@@ -26,7 +30,8 @@ pub(super) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     missing: Missing,
-    /// What to write [default: obj with a target or for a file `.o`; else logic, unless only a map is asked for]
+    /// What to write [default: obj with a target or for a file `.o`, c for a file `.c`; else logic, unless only a map, header or
+    /// report is asked for]
     #[arg(long, value_enum)]
     emit: Option<Emit>,
     /// Where to write it; `-` is the standard output
@@ -50,6 +55,9 @@ pub(super) struct Arguments {
     /// Stop after this pass; `lower` is before the first one, and an unknown one lists them
     #[arg(long, value_name = "PASS")]
     after: Option<String>,
+    /// Write a header for firmware: the structure of the image and the functions
+    #[arg(long, value_name = "FILE.h")]
+    header: Option<PathBuf>,
     /// Write the map of the process image, in JSON
     #[arg(long, value_name = "FILE.json")]
     map: Option<PathBuf>,
@@ -71,6 +79,8 @@ enum Emit {
     Clif,
     /// The target's code, disassembled
     Asm,
+    /// One file of C99 for any compiler, with the functions of an object file
+    C,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -83,14 +93,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
     let program = PASSES[..passes].iter().fold(program, |program, pass| (pass.run)(program));
-    let built = Built { program: &program, interface: &interface, target: target.as_ref() };
-    // All outputs are made before the first is written.
+    let place = |line, name: &str| place_of(&loaded.source, line, name);
     let emit = arguments.emit();
+    if emit == Some(Emit::C) || arguments.header.is_some() {
+        emit::validate(&program, &interface, &place)
+            .map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;
+    }
+    let notes = notes::of(&loaded.program, &loaded.source);
+    let built = Built { program: &program, interface: &interface, target: target.as_ref(), notes: &notes };
+    // All outputs are made before the first is written.
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
+    let header = arguments.header.as_deref().map(|path| Ok((path, built.header()?))).transpose()?;
     let report = arguments.report.as_deref().map(|path| built.report(path)).transpose()?;
     if arguments.report.as_deref() == Some(Path::new("-")) && output.is_some() && arguments.output == Path::new("-") {
         let hint = "give the output a file with `-o`, or the report one with `--report=FILE`";
         return Err(Failure::hinted(Code::BadOptions, "output and report cannot both be printed", hint));
+    }
+    if let Some((path, text)) = header {
+        write_whole(path, text.as_bytes())?;
     }
     if let Some(path) = &arguments.map {
         write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
@@ -107,12 +127,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     /// What to write, if anything beside what has an option of its own.
     fn emit(&self) -> Option<Emit> {
-        let objects = self.output.extension().is_some_and(|extension| extension == "o" || extension == "obj");
+        let named = |name: &str| self.output.extension().is_some_and(|extension| extension == name);
+        let beside = self.map.is_some() || self.header.is_some() || self.report.is_some();
         let printed = self.output == Path::new("-");
         match self.emit {
             // What has an option of its own is all that was asked for.
-            None if printed && (self.map.is_some() || self.report.is_some()) => None,
-            None if self.target.is_some() || objects => Some(Emit::Obj),
+            None if printed && beside => None,
+            None if named("c") => Some(Emit::C),
+            None if self.target.is_some() || named("o") || named("obj") => Some(Emit::Obj),
             None => Some(Emit::Logic),
             given => given,
         }
@@ -130,6 +152,29 @@ impl Arguments {
             None => Ok(None),
         }
     }
+}
+
+/// Where a name stands in a line of the source, or else the line.
+fn place_of(source: &Source, line: u32, name: &str) -> Span {
+    let range = usize::try_from(line).ok().and_then(|line| source.line_range(line.checked_sub(1)?)).unwrap_or_default();
+    let text = source.text().get(range.clone()).unwrap_or_default();
+    let is_part = |character: char| character.is_alphanumeric() || character == '_';
+    let is_word = |at: &usize| {
+        !text[..*at].ends_with(is_part) && !text[at + name.len()..].starts_with(is_part) && !name.is_empty()
+    };
+    match text.match_indices(name).map(|(at, _)| at).find(is_word) {
+        Some(at) => Span::new(range.start + at, range.start + at + name.len()),
+        None => Span::new(range.start, range.start + text.trim_end().len()),
+    }
+}
+
+/// What is wrong with a program that has no place in its source.
+fn unplaced(problems: &[Diagnostic]) -> Failure {
+    let text = |problem: &Diagnostic| match &problem.hint {
+        Some(hint) => Failure::hinted(problem.code, &problem.message, hint),
+        None => Failure::new(problem.code, &problem.message),
+    };
+    problems.first().map_or(Failure::Said, text)
 }
 
 /// How many passes run.
@@ -155,6 +200,8 @@ struct Built<'a> {
     interface: &'a Interface,
     /// The target that was asked for.
     target: Option<&'a Target>,
+    /// What comments say.
+    notes: &'a Notes,
 }
 
 impl Built<'_> {
@@ -183,6 +230,9 @@ impl Built<'_> {
                 object::build(self.program, self.interface, &target).map_err(|error| self.refused(&error))
             }
             Emit::Logic => Ok(logic::print(self.program).into_bytes()),
+            Emit::C => emit::c::emit_with(self.program, self.interface, self.notes)
+                .map(String::into_bytes)
+                .map_err(|problems| unplaced(&problems)),
             Emit::Clif => Ok(clif::text(self.program, &**self.target()?.isa()).into_bytes()),
             Emit::Asm => {
                 let target = self.target()?;
@@ -201,6 +251,10 @@ impl Built<'_> {
             .map_err(|reason| Failure::new(Code::CannotCompile, reason))?;
         let json = path.extension().is_some_and(|extension| extension == "json");
         Ok(if json { report.json() } else { report.table() })
+    }
+
+    fn header(&self) -> Result<String, Failure> {
+        emit::header::emit_with(self.program, self.interface, self.notes).map_err(|problems| unplaced(&problems))
     }
 
     /// That there is no code, with the rung that is to blame.

@@ -15,6 +15,7 @@
 //! every value in integer registers; BOOL is the low byte of 8 or 32 bits, of which the others mean nothing.
 
 mod array;
+mod content;
 mod integer;
 mod lower;
 mod parallel;
@@ -41,7 +42,8 @@ use crate::logic::{Binary, Op, Program, verify};
 use lower::Built;
 
 pub(super) use array::copy_is_called;
-pub use parallel::compile;
+pub(super) use content::is_same;
+pub use parallel::{compile, compile_some};
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time
 /// they fill the six registers for arguments of x86-64; with eight of them code is 2 bytes a rung shorter, but has

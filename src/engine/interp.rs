@@ -8,6 +8,7 @@
 mod access;
 mod gate;
 mod step;
+mod stream;
 mod textbook;
 mod translate;
 
@@ -18,6 +19,7 @@ use std::ops::Range;
 
 use rung_runtime::Scan;
 
+pub use stream::Stream;
 pub use textbook::Textbook;
 
 use crate::logic::{Program, Turn, verify};

@@ -2,6 +2,7 @@
 //!
 //! Code generation is [`clif`]'s; here it is installed and called, and nothing else.
 
+mod edited;
 mod memory;
 pub(super) mod segments;
 #[cfg(test)]
@@ -17,7 +18,8 @@ pub use super::clif::CompileError;
 use super::clif::{self, Chunk};
 use super::target::Target;
 use crate::logic::{Program, Turn};
-use memory::Code;
+pub use edited::{Edited, Update};
+use memory::{Call, Code};
 
 /// Cranelift's code generator for this machine, with all that its processor offers.
 ///
@@ -53,7 +55,13 @@ impl Jit {
 
     /// Makes a program's chunks ready to run.
     fn install(program: &Program, chunks: Vec<Chunk>) -> io::Result<Self> {
-        let code = Code::install(&chunks, program.layout.size() as usize)?;
+        let calls = Call::install(&chunks)?;
+        Ok(Self::of(program, chunks, calls))
+    }
+
+    /// The same of chunks that are installed.
+    fn of(program: &Program, chunks: Vec<Chunk>, calls: Vec<Call>) -> Self {
+        let code = Code::new(calls, program.layout.size() as usize);
         let before = |section: usize| chunks.partition_point(|chunk| chunk.sections.start < section);
         let tasks = (0..program.tasks.len())
             .map(|task| {
@@ -61,7 +69,7 @@ impl Jit {
                 (Turn::of(&program.tasks[task], &program.layout), before(sections.start)..before(sections.end))
             })
             .collect();
-        Ok(Self { tasks, chunks, code })
+        Self { tasks, chunks, code }
     }
 
     /// Bytes of machine code, padding between chunks not counted.

@@ -8,7 +8,7 @@ pub(super) mod diagram;
 pub(super) mod expression;
 mod network;
 pub(super) mod order;
-mod pins;
+pub(super) mod pins;
 pub(super) mod report;
 mod rungs;
 pub(super) mod types;

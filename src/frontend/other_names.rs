@@ -23,16 +23,16 @@ pub(super) fn settle(program: &mut Program) {
     };
     let globals = instances(&program.globals);
     for unit in &mut program.units {
-        let mut speller = Speller { globals: &globals, own: instances(&unit.variables) };
-        if !speller.globals.is_empty() || !speller.own.is_empty() {
-            unit.rungs.iter_mut().for_each(|rung| rewrite::references(&mut rung.circuit, &mut speller));
-        }
+        let mut speller = Speller { globals: &globals, own: instances(&unit.variables), of_type: &block };
+        unit.rungs.iter_mut().for_each(|rung| rewrite::references(&mut rung.circuit, &mut speller));
     }
 }
 
 struct Speller<'g> {
     globals: &'g HashMap<String, StandardBlock>,
     own: HashMap<String, StandardBlock>,
+    /// The standard block of a name of a type.
+    of_type: &'g dyn Fn(&Name) -> Option<StandardBlock>,
 }
 
 impl Speller<'_> {
@@ -57,7 +57,9 @@ impl Change for Speller<'_> {
     }
 
     fn call(&mut self, call: &mut BlockCall) {
-        let Some(block) = self.block(&call.instance.root) else { return };
+        // A call may declare its instance.
+        let named = call.type_name.as_ref().map(|ty| (self.of_type)(ty));
+        let Some(block) = named.unwrap_or_else(|| self.block(&call.instance.root)) else { return };
         for argument in &mut call.arguments {
             if let Some(pin) = block.input_called(&argument.pin.text) {
                 pin.clone_into(&mut argument.pin.text);

@@ -156,7 +156,7 @@ fn body(
     for content in pou.node.all("body").flat_map(Node::children) {
         let language = content.name();
         match language {
-            "LD" | "FBD" => {
+            "LD" | "ladderDiagram" | "FBD" | "functionBlockDiagram" => {
                 let (more, hidden) = if content.child("rung").is_some() {
                     let around = textual::Around { unit: &pou.unit, program, signatures };
                     (textual::read(content, &around, report), Vec::new())
@@ -167,7 +167,7 @@ fn body(
                 rungs.0.extend(more);
                 rungs.1.extend(hidden);
             }
-            "ST" => rungs.0.extend(statements(content, pou, program, comments, report)),
+            "ST" | "structuredText" => rungs.0.extend(statements(content, pou, program, comments, report)),
             "IL" | "SFC" => {
                 let problem = format!("the body of `{name}` is in {language}, which Rung does not read");
                 report.error(Code::NotSupported, content.span(), problem);

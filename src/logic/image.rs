@@ -3,7 +3,8 @@
 //! The layout is computed before any pass and is the same for every engine and target, in the target's byte
 //! order. In order: inputs, outputs, retained memory, other memory, block state. Outputs that are retained come
 //! last among the outputs, so that inputs, outputs and the retained are each one contiguous run. Within a run,
-//! BOOLs come first and wider types after them in order of width, so that padding is small and near.
+//! BOOLs come first and wider types after them in order of width, so that padding is small and near; of one width, long
+//! arrays come last, and before them what is used first comes first (see [`Layout::by_use`]).
 //!
 //! With an earlier layout given, every slot of it keeps its offset, new ones are appended as a second group of
 //! the same order, and each run gets one more [`Extent`].
@@ -252,6 +253,16 @@ impl Layout {
         self.size
     }
 
+    /// The same slots, but that of one run and width those of a lower rank come first; `ranks` has one entry a slot, no two
+    /// of them the same but for [`u32::MAX`]. What the earlier layout has stays where it was. All ids stay.
+    ///
+    /// # Errors
+    /// [`ImageTooLarge`] when there is no room.
+    pub fn by_use(self, earlier: Option<&EarlierLayout>, ranks: &[u32]) -> Result<Self, ImageTooLarge> {
+        let Self { slots, arrays, observed, .. } = self;
+        LayoutBuilder { slots, arrays, observed }.finish_ranked(earlier, ranks)
+    }
+
     /// What names this layout: two with one hash have the same slots (name, type, part, retain) at the same offsets.
     /// Initial values and source lines do not count. FNV-1a, 64 bits.
     pub fn hash(&self) -> u64 {
@@ -441,6 +452,12 @@ impl LayoutBuilder {
     /// # Errors
     /// [`ImageTooLarge`] when there is no room.
     pub fn finish(self, earlier: Option<&EarlierLayout>) -> Result<Layout, ImageTooLarge> {
+        self.finish_ranked(earlier, &[])
+    }
+
+    /// The same, with what comes first among slots of one run and width: those of a lower rank. Slots beyond the ranks
+    /// have the highest.
+    fn finish_ranked(self, earlier: Option<&EarlierLayout>, ranks: &[u32]) -> Result<Layout, ImageTooLarge> {
         let none = EarlierLayout::default();
         let earlier = earlier.unwrap_or(&none);
         let kept: HashMap<&str, &KeptSlot> = earlier.slots.iter().map(|slot| (slot.name.as_str(), slot)).collect();
@@ -466,8 +483,9 @@ impl LayoutBuilder {
                 None => fresh.push(index),
             }
         }
-        // A stable sort: slots of one run and width keep the order of their declaration.
-        fresh.sort_by_key(|index| order(&layout.slots[*index]));
+        let groups = groups(&layout, ranks);
+        // A stable sort: slots of one run, width and rank keep the order of their declaration.
+        fresh.sort_by_key(|index| (order(&layout.slots[*index]), groups[*index]));
         let mut end = u64::from(earlier.size);
         let runs: Vec<u8> = fresh.iter().map(|index| run_of(&layout.slots[*index])).collect();
         let mut start = 0;
@@ -516,6 +534,31 @@ fn run_of(slot: &Slot) -> u8 {
         (Area::Memory, false) => 4,
         (Area::State, false) => 5,
     }
+}
+
+/// Bytes from which on an array is long: it lies behind all that is short, which it would push apart.
+const LONG: u32 = 32;
+
+/// By slot: whether it is part of a long array, and its rank; all elements of arrays that share slots have the lowest of
+/// theirs, so that they stay side by side.
+fn groups(layout: &Layout, ranks: &[u32]) -> Vec<(bool, u32)> {
+    let rank = |index: usize| ranks.get(index).copied().unwrap_or(u32::MAX);
+    let mut groups: Vec<(bool, u32)> = (0..layout.slots.len()).map(|index| (false, rank(index))).collect();
+    let mut arrays: Vec<Range<usize>> = layout.arrays.iter().map(|array| array.indices()).collect();
+    arrays.sort_unstable_by_key(|slots| slots.start);
+    let mut joined: Vec<Range<usize>> = Vec::new();
+    for slots in arrays {
+        match joined.last_mut() {
+            Some(last) if slots.start < last.end => last.end = last.end.max(slots.end),
+            _ => joined.push(slots),
+        }
+    }
+    for slots in joined {
+        let bytes: u32 = layout.slots[slots.clone()].iter().map(|slot| slot.ty.size()).sum();
+        let least = slots.clone().map(rank).min().unwrap_or(u32::MAX);
+        groups[slots].fill((bytes >= LONG, least));
+    }
+    groups
 }
 
 fn order(slot: &Slot) -> (u8, bool, u32) {

@@ -163,6 +163,11 @@ pub(super) const UNITS: [(&str, i128); 7] = [
     ("ns", 1),
 ];
 
+/// A value as text says it, exactly: `-5`, `16#FF`, `T#1050ms`, `0.1`.
+pub fn literal(value: Value) -> impl fmt::Display {
+    Literal(value)
+}
+
 /// A value, exactly: as IEC 61131-3 writes it, but that infinities and NaNs are bits.
 struct Literal(Value);
 

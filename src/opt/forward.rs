@@ -1,19 +1,20 @@
-//! A load of a slot whose value is at hand becomes that value.
+//! A load of a slot whose value is at hand becomes that value, and a store of what the slot holds goes.
 //!
-//! Only near: a value that was stored within the last [`WINDOW`] sections, or loaded in this one. Farther, values
-//! that wait in registers would push each other out to the stack, which costs more than loading again.
+//! Only near: a value that was stored or loaded within the last [`WINDOW`] sections. Farther, values that wait in
+//! registers would push each other out to the stack, which costs more than loading again. A load that can be part of
+//! the instruction that uses it costs nothing, and back ends make such a one again.
 
 use std::collections::BTreeMap;
 
 use super::rewrite::rewrite;
 use crate::logic::{Op, Program, SlotId, ValueId};
 
-/// Sections for which a stored value is kept.
-const WINDOW: usize = 6;
+/// Sections for which a value is kept.
+pub(super) const WINDOW: usize = 6;
 
 /// See the module.
 pub(super) fn forward(program: Program) -> Program {
-    /// A value that a slot holds, and the last section in which it is used for that.
+    /// A value that a slot holds, and the last section in which a load becomes it.
     struct Known {
         value: ValueId,
         until: usize,
@@ -31,9 +32,10 @@ pub(super) fn forward(program: Program) -> Program {
                     return Some(known.value);
                 }
                 let value = output.emit(instruction.ty, instruction.op);
-                known.insert(slot, Known { value, until: place.section });
+                known.insert(slot, Known { value, until: place.section + WINDOW });
                 Some(value)
             }
+            Op::Store(slot, value) if known.get(&slot).is_some_and(|known| known.value == value) => None,
             Op::Store(slot, value) => {
                 known.insert(slot, Known { value, until: place.section + WINDOW });
                 output.keep(instruction)

@@ -1,13 +1,17 @@
-//! Copying a program with some instructions replaced: what the passes are written with. Keeps sections, origins
-//! and chunks.
+//! Copying a program with some instructions replaced: what the passes are written with. Keeps origins, sections and
+//! chunks.
 
 use crate::elementary::Elementary;
 use crate::logic::{Instruction, Op, Program, Unary, ValueId};
 
-/// The program that is being made.
+/// The program that is being made, and the one that it is made from.
 #[derive(Debug)]
 pub(super) struct Output {
     instructions: Vec<Instruction>,
+    /// The instructions of the program before.
+    old: Vec<Instruction>,
+    /// By instruction of the program before: what stands for it, so far.
+    copies: Vec<Option<ValueId>>,
 }
 
 impl Output {
@@ -53,6 +57,29 @@ impl Output {
     pub(super) fn constant_of(&self, value: ValueId) -> Option<u64> {
         if let Op::Constant(bits) = self.op(value) { Some(bits) } else { None }
     }
+
+    /// The instructions of the program before.
+    pub(super) fn old(&self) -> &[Instruction] {
+        &self.old
+    }
+
+    /// An instruction of the program before with the operands that it has in the copy. `None` where one of them has no
+    /// copy: a pass knew it to be unused, and so is this.
+    pub(super) fn mapped(&self, index: usize) -> Option<Instruction> {
+        let Instruction { ty, op } = self.old[index];
+        let mut complete = true;
+        let op = op.map_operands(|operand| {
+            let copy = self.copies[operand.index()];
+            complete &= copy.is_some();
+            copy.unwrap_or(operand)
+        });
+        complete.then_some(Instruction { ty, op })
+    }
+
+    /// What stands for a value of the program before, once it has a copy.
+    pub(super) fn copy(&self, old: ValueId) -> Option<ValueId> {
+        self.copies[old.index()]
+    }
 }
 
 /// Where in a program an instruction stands.
@@ -62,6 +89,9 @@ pub(super) struct Place {
     pub(super) index: usize,
     /// Its section.
     pub(super) section: usize,
+    /// Where that starts, and one past its end.
+    pub(super) start: usize,
+    pub(super) end: usize,
     /// Its chunk.
     pub(super) chunk: usize,
 }
@@ -69,27 +99,28 @@ pub(super) struct Place {
 /// Copies a program. For every instruction, with its operands already those of the copy, `visit` gives what stands
 /// for it there, having added what it wants; `None` where nothing does, as for stores and for what nobody uses.
 pub(super) fn rewrite(
-    mut program: Program,
+    program: Program,
     mut visit: impl FnMut(&mut Output, Place, Instruction) -> Option<ValueId>,
 ) -> Program {
-    let mut output = Output { instructions: Vec::with_capacity(program.instructions.len()) };
-    let mut copies: Vec<Option<ValueId>> = vec![None; program.instructions.len()];
+    rewrite_raw(program, |output, place| {
+        output.mapped(place.index).and_then(|instruction| visit(output, place, instruction))
+    })
+}
+
+/// The same for passes that look at the program before: see [`Output::old`], [`Output::mapped`].
+pub(super) fn rewrite_raw(
+    mut program: Program,
+    mut visit: impl FnMut(&mut Output, Place) -> Option<ValueId>,
+) -> Program {
+    let old = std::mem::take(&mut program.instructions);
+    let copies = vec![None; old.len()];
+    let mut output = Output { instructions: Vec::with_capacity(old.len()), old, copies };
     let (mut start, mut chunk) = (0, 0);
     for (section, part) in program.sections.iter_mut().enumerate() {
         let end = part.end as usize;
         chunk += usize::from(part.starts_chunk);
         for index in start..end {
-            let Instruction { ty, op } = program.instructions[index];
-            let mut complete = true;
-            let op = op.map_operands(|operand| {
-                let copy = copies[operand.index()];
-                complete &= copy.is_some();
-                copy.unwrap_or(operand)
-            });
-            // An operand without a copy is one that a pass knew to be unused, and so is this.
-            if complete {
-                copies[index] = visit(&mut output, Place { index, section, chunk }, Instruction { ty, op });
-            }
+            output.copies[index] = visit(&mut output, Place { index, section, start, end, chunk });
         }
         start = end;
         part.end = u32::try_from(output.instructions.len()).unwrap_or(u32::MAX);

@@ -3,7 +3,7 @@
 use super::fold::folded;
 use super::rewrite::{Output, rewrite};
 use crate::elementary::{Elementary, canonical};
-use crate::logic::{Binary, Compare, Instruction, Op, Program, Unary, ValueId};
+use crate::logic::{Binary, Compare, Instruction, Op, Program, Unary, ValueId, evaluate};
 
 /// See the module.
 pub(super) fn simplify(program: Program) -> Program {
@@ -17,10 +17,11 @@ pub(super) fn simplify(program: Program) -> Program {
 
 fn simplified(output: &mut Output, Instruction { ty, op }: Instruction) -> Option<ValueId> {
     match op {
-        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Compare(..) | Op::Call(..) => None,
+        Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) | Op::Call(..) => None,
         Op::LoadIndexed(..) | Op::StoreIndexed(..) | Op::CopyArray(..) => None,
         Op::Unary(op, a) => unary(output, op, a),
         Op::Binary(op, a, b) => bitwise(output, op, ty, a, b),
+        Op::Compare(op, a, b) => compare(output, op, a, b),
         Op::Select(condition, a, b) => select(output, ty, condition, a, b),
         Op::Convert(a) => (output.ty(a) == ty).then_some(a),
         Op::Reinterpret(a) if output.ty(a) == ty => Some(a),
@@ -93,6 +94,28 @@ fn bitwise(output: &mut Output, op: Binary, ty: Elementary, a: ValueId, b: Value
     }
 }
 
+/// A comparison of a value with itself, which of a NaN is another; and one of a BOOL with a constant.
+fn compare(output: &mut Output, op: Compare, a: ValueId, b: ValueId) -> Option<ValueId> {
+    let ty = output.ty(a);
+    if a == b && !ty.is_real() {
+        let holds = matches!(op, Compare::Equal | Compare::LessOrEqual | Compare::GreaterOrEqual);
+        return Some(output.constant(Elementary::Bool, u64::from(holds)));
+    }
+    if ty != Elementary::Bool {
+        return None;
+    }
+    let (value, with) = match (output.constant_of(a), output.constant_of(b)) {
+        (Some(bits), None) => (b, [0, 1].map(|value| evaluate::compare(op, ty, bits, value))),
+        (None, Some(bits)) => (a, [0, 1].map(|value| evaluate::compare(op, ty, value, bits))),
+        _ => return None,
+    };
+    Some(match with {
+        [false, true] => value,
+        [true, false] => output.not(value),
+        [both, _] => output.constant(Elementary::Bool, u64::from(both)),
+    })
+}
+
 fn inverts(output: &Output, a: ValueId, b: ValueId) -> bool {
     matches!(output.op(a), Op::Unary(Unary::Not, inner) if inner == b)
 }
@@ -100,6 +123,17 @@ fn inverts(output: &Output, a: ValueId, b: ValueId) -> bool {
 fn select(output: &mut Output, ty: Elementary, condition: ValueId, a: ValueId, b: ValueId) -> Option<ValueId> {
     if a == b {
         return Some(a);
+    }
+    // Of a choice by the same condition within, one side is never taken.
+    let taken = |output: &Output, value: ValueId, holds: bool| match output.op(value) {
+        Op::Select(inner, a, b) if inner == condition => Some(if holds { a } else { b }),
+        _ => None,
+    };
+    if let Some(value) = taken(output, a, true) {
+        return select(output, ty, condition, value, b).or_else(|| emitted(output, ty, condition, value, b));
+    }
+    if let Some(value) = taken(output, b, false) {
+        return select(output, ty, condition, a, value).or_else(|| emitted(output, ty, condition, a, value));
     }
     if ty == Elementary::Bool {
         let (op, x, y) = match (output.constant_of(a), output.constant_of(b)) {
@@ -112,6 +146,10 @@ fn select(output: &mut Output, ty: Elementary, condition: ValueId, a: ValueId, b
         return bitwise(output, op, ty, x, y).or_else(|| Some(output.emit(ty, Op::Binary(op, x, y))));
     }
     swapped(output, ty, condition, a, b)
+}
+
+fn emitted(output: &mut Output, ty: Elementary, condition: ValueId, a: ValueId, b: ValueId) -> Option<ValueId> {
+    Some(output.emit(ty, Op::Select(condition, a, b)))
 }
 
 /// A choice by an inverse is the other choice.

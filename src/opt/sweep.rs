@@ -1,5 +1,8 @@
-//! What nobody sees is removed: values without a use, and stores that are overwritten in their own section before
-//! anything loads the slot. Nobody looks at the image within a scan.
+//! What nobody sees is removed: values without a use, and stores that are overwritten in their own chunk before anything
+//! loads the slot. So of several coils of a variable only the last is stored, unless a rung between reads it.
+//!
+//! Nobody looks at the image while a task runs. But a chunk ends what is known: that a later one stores a slot again must
+//! not be part of this one's code, or they could not be replaced one by one.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,9 +13,9 @@ use crate::logic::{Op, Program, SlotId};
 /// See the module.
 pub(super) fn sweep(program: Program) -> Program {
     let mut needed = vec![false; program.instructions.len()];
+    // Slots that this chunk stores, later than where we are and with no load between.
+    let mut overwritten = BTreeSet::new();
     for section in (0..program.sections.len()).rev() {
-        // Slots that this section stores, later than where we are and with no load between.
-        let mut overwritten = BTreeSet::new();
         for index in program.section_range(section).rev() {
             match program.instructions[index].op {
                 Op::Store(slot, _) => needed[index] = overwritten.insert(slot),
@@ -42,6 +45,9 @@ pub(super) fn sweep(program: Program) -> Program {
             if needed[index] {
                 program.instructions[index].op.operands().for_each(|operand| needed[operand.index()] = true);
             }
+        }
+        if program.sections[section].starts_chunk {
+            overwritten.clear();
         }
     }
     rewrite(program, |output, place, instruction| {

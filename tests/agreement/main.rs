@@ -11,6 +11,7 @@ mod jumps;
 mod nesting;
 mod one_program;
 mod passes;
+mod presets;
 mod random;
 mod register_machine;
 mod statements;

@@ -10,18 +10,22 @@ use rung_runtime::Scan;
 use crate::support::random_program::random_program;
 use crate::support::rig::checked;
 
-/// Programs that go through every pass.
-const PROGRAMS: u64 = 200;
+/// Programs that go through every pass: 200, or as many as `RUNG_PROGRAMS` says.
+fn programs() -> u64 {
+    std::env::var("RUNG_PROGRAMS").ok().and_then(|number| number.parse().ok()).unwrap_or(200)
+}
 
 #[test]
 fn every_pass_keeps_what_random_ladder_programs_compute() {
-    for seed in 0..PROGRAMS {
+    for seed in 0..programs() {
         let checked = checked(&random_program(seed)).unwrap_or_else(|problems| panic!("seed {seed}: {problems}"));
         let mut before = lower::lower(&checked, &Source::new("drawn", ""), None).expect("a small image");
         for pass in PASSES {
             let after = (pass.run)(before.clone());
             assert_eq!((&after.layout, &after.origins), (&before.layout, &before.origins));
-            assert_eq!(after.chunks(), before.chunks(), "{} of seed {seed}", pass.name);
+            if !["cut", "chunk"].contains(&pass.name) {
+                assert_eq!(after.chunks(), before.chunks(), "{} of seed {seed}", pass.name);
+            }
             let mut expected = random::image(&before.layout, seed);
             let mut actual = expected.clone();
             let (mut from, mut to) = (Textbook::new(&before), Textbook::new(&after));
@@ -38,7 +42,7 @@ fn every_pass_keeps_what_random_ladder_programs_compute() {
 
 #[test]
 fn the_text_of_the_logic_of_random_ladder_programs_reads_back_as_that_logic() {
-    for seed in 0..PROGRAMS {
+    for seed in 0..programs() {
         let checked = checked(&random_program(seed)).unwrap_or_else(|problems| panic!("seed {seed}: {problems}"));
         let program = lower::lower(&checked, &Source::new("drawn", ""), None).expect("a small image");
         let text = logic::print(&program);

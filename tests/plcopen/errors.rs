@@ -100,3 +100,18 @@ fn malformed_xml_is_an_error_at_its_place() {
         assert_eq!(codes(&parse(text).diagnostics), [code], "{text}");
     }
 }
+
+#[test]
+fn a_variable_that_nothing_declares_is_an_error_at_its_element() {
+    let text = ladder("b", &[rail(), contact(2, "ghost", "1"), coil(3, "b", "2")]);
+    let source = Source::new("test.xml", text.as_str());
+    let parsed = rung::frontend::parse(&source);
+    let (checked, found) = rung::check::check(&parsed.program);
+    assert!(checked.is_none());
+    let errors: Vec<(String, usize)> = found
+        .iter()
+        .filter(|found| found.is_error())
+        .map(|found| (found.code.to_string(), source.line(found.span.start)))
+        .collect();
+    assert_eq!(errors, one("R0301", 3));
+}

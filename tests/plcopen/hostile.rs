@@ -25,6 +25,25 @@ fn many_attributes_and_elements_are_refused() {
 }
 
 #[test]
+fn a_hundred_megabytes_are_refused_or_read_to_their_end() {
+    let blanks = format!("<project>{}</project>", " ".repeat(100 << 20));
+    assert_eq!(codes(&parse(&blanks).diagnostics), ["R0222"]);
+    let deep = "<addData><data name='x'>".repeat(5 << 20);
+    assert_eq!(codes(&parse(&format!("<project>{deep}")).diagnostics), ["R0204"]);
+    let texts = format!("<project><p>{}", "<![CDATA[a]]>b".repeat(8 << 20));
+    assert_eq!(codes(&parse(&texts).diagnostics), ["R0203"]);
+}
+
+#[test]
+fn bytes_that_are_not_of_the_declared_encoding_are_refused() {
+    let text = ladder("a", &[rail(), coil(2, "a", "1")]).replace("'a'", "'ma\u{df}'");
+    let mut wrong = text.into_bytes();
+    let at = wrong.iter().position(|byte| *byte == 0xC3).expect("the sharp s");
+    wrong.remove(at);
+    assert!(Source::decode("test.xml", &wrong).is_err());
+}
+
+#[test]
 fn other_encodings_are_read() {
     let text = ladder("maß", &[rail(), contact(2, "maß", "1"), coil(3, "maß", "2")]);
     let expected = native::print(&parse(&text).program);

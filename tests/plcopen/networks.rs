@@ -518,3 +518,32 @@ fn whole_numbers_at_pins_for_durations_count_scans_in_written_out_rungs() {
         "t:TON(IN := a, PT := T#1ms * n, Q => c) | {m := LREAL_TO_INT(TIME_TO_LREAL(t.ET) / LREAL#0.001)}"
     );
 }
+
+#[test]
+fn functions_in_written_out_rungs_may_have_instances_and_pins_of_their_own() {
+    let pin = |name: &str, value: &str| format!("<variable formalParameter='{name}'>{value}</variable>");
+    let box_of =
+        |names: &str, pins: &[String]| format!("<rung localId='1'><block {names}>{}</block></rung>", pins.concat());
+    let body = [
+        box_of("typeName='ADD' instanceName='a1'", &[pin("IN1", "x"), pin("IN2", "y"), pin("OUT", "x")]),
+        box_of("typeName='MOVE' instanceName='m1'", &[pin("IN1", "x"), pin("OUT", "y")]),
+        box_of("typeName='CTD' instanceName='c1'", &[pin("CD", "a"), pin("LOAD", "b"), pin("PV", "3"), pin("CV", "x")]),
+    ];
+    let body = format!("<ladderDiagram>{}</ladderDiagram>", body.concat());
+    let text = project(&pou("program", "p", &(locals("a b", "BOOL") + &locals("x y", "INT")), &body), "");
+    assert_eq!(
+        rungs(&text),
+        ["ADD(IN1 := x, IN2 := y, OUT => x)", "MOVE(IN := x, OUT => y)", "c1:CTD(CD := a, LD := b, PV := 3, CV => x)"]
+    );
+}
+
+#[test]
+fn a_function_with_an_instance_is_still_a_function() {
+    let declarations = locals("x y", "INT");
+    let text = program(
+        &declarations,
+        "FBD",
+        &[value(2, "x"), block(3, "ADD", "add1", "IN1=2 IN2=2", "OUT"), variable(4, "y", "3.OUT")],
+    );
+    assert_eq!(rungs(&text), ["{y := x + x}"]);
+}

@@ -43,9 +43,12 @@ pub(super) fn chunk(
     builder.seal_block(block);
     let first = if sections.is_empty() { 0 } else { program.section_range(sections.start).start };
     let end = if sections.is_empty() { 0 } else { program.section_range(sections.end - 1).end };
-    let mut uses = vec![0; end - first];
-    for operand in program.instructions[first..end].iter().flat_map(|instruction| instruction.op.operands()) {
-        uses[operand.index() - first] += 1;
+    let (mut uses, mut only_chooses) = (vec![0; end - first], vec![true; end - first]);
+    for instruction in &program.instructions[first..end] {
+        for (place, operand) in instruction.op.operands().enumerate() {
+            uses[operand.index() - first] += 1;
+            only_chooses[operand.index() - first] &= place == 0 && matches!(instruction.op, Op::Select(..));
+        }
     }
     let params = builder.block_params(block).to_vec();
     let now = params[1];
@@ -67,6 +70,7 @@ pub(super) fn chunk(
         copy_signature: None,
         held: vec![None; end - first],
         uses,
+        only_chooses,
         constants: HashMap::new(),
         alive: 0,
         most_alive: 0,
@@ -106,6 +110,8 @@ pub(super) struct Lowering<'a, 'f> {
     held: Vec<Option<Value>>,
     /// By instruction of the chunk: uses that are still to come.
     uses: Vec<u32>,
+    /// By instruction of the chunk: whether it is used for nothing but as the condition of selects.
+    only_chooses: Vec<bool>,
     /// Constants that the section has made and may use again.
     constants: HashMap<(Type, u64), Value>,
     /// How many values are held that have a use to come, now and at most.
@@ -135,11 +141,14 @@ impl Lowering<'_, '_> {
             Op::Store(slot, a) => return self.store(slot, a),
             Op::Unary(op, a) if ty.is_real() => self.real_unary(op, ty, a),
             Op::Unary(op, a) => self.integer_unary(op, ty, a),
+            Op::Binary(Binary::And, a, b) if self.is_test(index - self.first, a, b) => self.byte_test(a, b),
             Op::Binary(op, a, b) if ty == Elementary::Bool => self.bool_binary(op, a, b),
             Op::Binary(op, a, b) if ty.is_real() => self.real_binary(op, ty, a, b),
             Op::Binary(op, a, b) => self.integer_binary(op, ty, a, b),
             Op::Compare(op, a, b) => self.compare(op, a, b),
             Op::Select(condition, a, b) => {
+                // By an inverse it is the other one.
+                let (condition, a, b) = self.late_not(condition).map_or((condition, a, b), |inner| (inner, b, a));
                 let condition = self.flag(condition);
                 let (a, b) = self.alike(a, b);
                 self.choose(condition, a, b)
@@ -151,9 +160,25 @@ impl Lowering<'_, '_> {
             Op::StoreIndexed(array, index, a) => return self.store_indexed(array, index, a),
             Op::CopyArray(to, from, condition) => return self.copy_array(to, from, condition),
         };
-        let joins = matches!(op, Op::Binary(..)) && ty == Elementary::Bool;
-        let value = if joins && self.uses[index - self.first] > 1 { self.settled(value) } else { value };
-        self.hold(index - self.first, value);
+        // What becomes part of the instruction that tests it must not be put into a register.
+        let place = index - self.first;
+        let joins =
+            matches!(op, Op::Binary(..) | Op::Select(..)) && !(ty == Elementary::Bool && self.only_chooses[place]);
+        let value = if joins && self.uses[place] > 1 { self.settled(value) } else { value };
+        self.hold(place, value);
+    }
+
+    /// Whether an AND is nothing but the condition of selects, and a single instruction sets the flags by it.
+    fn is_test(&self, place: usize, a: ValueId, b: ValueId) -> bool {
+        let inverts = self.late_not(a).is_some() || self.late_not(b).is_some();
+        self.target.wide_loads && self.only_chooses[place] && self.type_of(a) == Elementary::Bool && !inverts
+    }
+
+    /// The AND of two BOOLs in 8 bits, all of which count.
+    fn byte_test(&mut self, a: ValueId, b: ValueId) -> Value {
+        let (a, b) = (self.exact_value(a), self.exact_value(b));
+        let (a, b) = (self.byte_of(a), self.byte_of(b));
+        self.builder.ins().band(a, b)
     }
 
     fn hold(&mut self, place: usize, value: Value) {

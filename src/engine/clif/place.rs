@@ -72,6 +72,22 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
         .flatten()
 }
 
+/// What the sections before `section` stored lately, as what code depends on: how many sections ago, where, and how wide.
+pub(super) fn stored_before(program: &Program, section: usize) -> Vec<(usize, u32, u32)> {
+    let count = program.sections.len();
+    let mut stored = Vec::new();
+    for ago in (1..=LATELY.min(count)).rev() {
+        let earlier = (section + count - ago) % count;
+        for (stores, slot) in accesses(program, earlier..earlier + 1) {
+            if stores {
+                let slot = program.layout.slot(slot);
+                stored.push((ago, slot.offset, slot.ty.size()));
+            }
+        }
+    }
+    stored
+}
+
 /// The bytes that were stored lately, as the sections run one after another.
 pub(super) struct Stored {
     /// By byte: the number of the section that stored it last. Sections of the scan before count below `LATELY`.
@@ -82,15 +98,8 @@ impl Stored {
     /// What the sections before `section` stored; those before the first are the last of the scan before.
     pub(super) fn before(program: &Program, section: usize) -> Self {
         let mut stored = Self { last: HashMap::new() };
-        let count = program.sections.len();
-        for ago in (1..=LATELY.min(count)).rev() {
-            let earlier = (section + count - ago) % count;
-            for (stores, slot) in accesses(program, earlier..earlier + 1) {
-                if stores {
-                    let slot = program.layout.slot(slot);
-                    stored.mark(slot.offset, slot.ty.size(), section + LATELY - ago);
-                }
-            }
+        for (ago, offset, size) in stored_before(program, section) {
+            stored.mark(offset, size, section + LATELY - ago);
         }
         stored
     }

@@ -31,6 +31,11 @@ impl Gate {
         Self { inputs, target, table: function.table }
     }
 
+    /// The table, the inputs, the target.
+    pub(super) fn parts(&self) -> (Table, [u32; INPUTS], u32) {
+        (self.table, self.inputs, self.target)
+    }
+
     #[inline(always)]
     pub(super) fn execute(&self, cells: &mut [u8]) {
         let input = |place: usize| u32::from(cells[self.inputs[place] as usize]) << place;

@@ -1,17 +1,17 @@
 //! The textbook interpreter: one instruction after another, by one `match`, over an array of registers.
 //!
 //! It is what an interpreter is usually made like, and made well: operands are decoded once, constants wait in their
-//! registers, and the operations that ladders consist of have an arm each; all others are computed as `evaluate` defines
-//! them. It must stay without any other trick, so that a reader believes it, and a speed-up measured over it is one over the
-//! usual interpreter.
+//! registers, and the operations that ladders consist of have an arm each; all others are the [`Executor`]'s. It must stay
+//! without any other trick, so that a reader believes it, and a speed-up measured over it is one over the usual interpreter.
 
 use std::ops::Range;
 
 use rung_runtime::Scan;
 
 use crate::elementary::{Elementary, Value};
+use crate::logic::execute::Executor;
 use crate::logic::image::{read, write};
-use crate::logic::{Array, Binary, Compare, Instruction, Op, Program, Turn, Unary, ValueId, evaluate, verify};
+use crate::logic::{Binary, Compare, Instruction, Op, Program, Turn, Unary, ValueId, verify};
 
 /// A program, interpreted instruction by instruction.
 #[derive(Clone, Debug)]
@@ -21,9 +21,7 @@ pub struct Textbook {
     steps: Vec<Step>,
     /// What the steps are made of that are computed by their definition.
     instructions: Vec<Instruction>,
-    /// Offset and type of each slot.
-    slots: Vec<(u32, Elementary)>,
-    arrays: Vec<Array>,
+    executor: Executor,
     /// The result of each instruction, in register form.
     registers: Vec<u64>,
 }
@@ -214,8 +212,7 @@ impl Textbook {
             tasks,
             steps,
             instructions: program.instructions.clone(),
-            slots: program.layout.slots().iter().map(|slot| (slot.offset, slot.ty)).collect(),
-            arrays: program.layout.arrays().to_vec(),
+            executor: Executor::new(&program.layout),
             registers: program.instructions.iter().map(constant).collect(),
         }
     }
@@ -257,59 +254,13 @@ impl Textbook {
                 Step::Less { to, a, b } => (to, u64::from(signed(a) < signed(b))),
                 Step::LessOrEqual { to, a, b } => (to, u64::from(signed(a) <= signed(b))),
                 Step::Other { place } => {
-                    if let Some(value) = self.evaluate(place as usize, image) {
-                        self.registers[place as usize] = value;
-                    }
+                    let place = place as usize;
+                    self.executor.execute(&self.instructions, place..place + 1, registers, image, now);
                     continue;
                 }
             };
             registers[to as usize] = value;
         }
-    }
-
-    /// What an instruction computes by its definition; `None` of one that stores.
-    #[inline(never)]
-    fn evaluate(&self, place: usize, image: &mut [u8]) -> Option<u64> {
-        let Self { instructions, slots, arrays, registers, .. } = self;
-        let Instruction { ty, op } = instructions[place];
-        let of = |value: ValueId| registers[value.index()];
-        let ty_of = |value: ValueId| instructions[value.index()].ty;
-        Some(match op {
-            // These have steps of their own.
-            Op::Constant(_) | Op::Now | Op::Load(_) | Op::Store(..) => return None,
-            Op::LoadIndexed(array, index) => {
-                let Array { first, count } = arrays[array.index()];
-                evaluate::element(count, of(index)).map_or(0, |element| {
-                    let (offset, ty) = slots[first.index() + element as usize];
-                    read(image, offset, ty).bits()
-                })
-            }
-            Op::StoreIndexed(array, index, a) => {
-                let Array { first, count } = arrays[array.index()];
-                if let Some(element) = evaluate::element(count, of(index)) {
-                    let (offset, ty) = slots[first.index() + element as usize];
-                    write(image, offset, Value::from_bits(ty, of(a)));
-                }
-                return None;
-            }
-            Op::CopyArray(to, from, condition) => {
-                if of(condition) != 0 {
-                    for (to, from) in arrays[to.index()].indices().zip(arrays[from.index()].indices()) {
-                        let ((to, _), (from, ty)) = (slots[to], slots[from]);
-                        let value = read(image, from, ty);
-                        write(image, to, value);
-                    }
-                }
-                return None;
-            }
-            Op::Unary(op, a) => evaluate::unary(op, ty, of(a)),
-            Op::Binary(op, a, b) => evaluate::binary(op, ty, of(a), of(b)),
-            Op::Compare(op, a, b) => u64::from(evaluate::compare(op, ty_of(a), of(a), of(b))),
-            Op::Select(condition, a, b) => of(if of(condition) != 0 { a } else { b }),
-            Op::Convert(a) => evaluate::convert(ty_of(a), ty, of(a)),
-            Op::Reinterpret(a) => evaluate::reinterpret(ty, of(a)),
-            Op::Call(helper, a, b) => evaluate::call(helper, ty, of(a), b.map(of)),
-        })
     }
 }
 

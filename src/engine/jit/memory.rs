@@ -5,6 +5,7 @@
 
 use std::io;
 use std::ops::Range;
+use std::sync::Arc;
 
 use memmap2::{Mmap, MmapMut};
 
@@ -40,8 +41,6 @@ pub(super) struct Code {
     calls: Vec<Call>,
     /// Bytes that an image must have.
     reach: usize,
-    /// Where `calls` point to; `None` without chunks.
-    _pages: Option<Mmap>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -50,15 +49,18 @@ enum Entry {
     Helped(HelpedFunction),
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Call {
+/// The code of one chunk. What shares pages goes with the last of it.
+#[derive(Clone, Debug)]
+pub(super) struct Call {
     entry: Entry,
     bases: [u32; BASES],
+    /// Where `entry` points to.
+    _pages: Arc<Mmap>,
 }
 
-impl Code {
-    /// Copies chunks into memory of their own, for images of at least `image_size` bytes.
-    pub(super) fn install(chunks: &[Chunk], image_size: usize) -> io::Result<Self> {
+impl Call {
+    /// Copies chunks into memory of their own, one behind the other.
+    pub(super) fn install(chunks: &[Chunk]) -> io::Result<Vec<Self>> {
         let mut starts = Vec::with_capacity(chunks.len());
         let mut size = 0usize;
         for chunk in chunks {
@@ -67,7 +69,7 @@ impl Code {
             size += chunk.code.len();
         }
         if size == 0 {
-            return Ok(Self { calls: Vec::new(), reach: image_size, _pages: None });
+            return Ok(Vec::new());
         }
         let mut pages = MmapMut::map_anon(size)?;
         for (chunk, start) in chunks.iter().zip(&starts) {
@@ -75,6 +77,7 @@ impl Code {
         }
         let pages = pages.make_exec()?;
         synchronise(&pages)?;
+        let pages = Arc::new(pages);
         let call = |(chunk, start): (&Chunk, &usize)| {
             let code = pages[*start..].as_ptr();
             let entry = if chunk.calls_helpers {
@@ -85,10 +88,21 @@ impl Code {
                 // signature `Function` and the C calling convention; `_pages` keeps it there as long as the call.
                 Entry::Plain(unsafe { std::mem::transmute::<*const u8, Function>(code) })
             };
-            Call { entry, bases: chunk.bases }
+            Self { entry, bases: chunk.bases, _pages: Arc::clone(&pages) }
         };
-        let calls = chunks.iter().zip(&starts).map(call).collect();
-        Ok(Self { calls, reach: image_size, _pages: Some(pages) })
+        Ok(chunks.iter().zip(&starts).map(call).collect())
+    }
+}
+
+impl Code {
+    /// Chunks to be run on images of at least `image_size` bytes, for which they were made.
+    pub(super) fn new(calls: Vec<Call>, image_size: usize) -> Self {
+        Self { calls, reach: image_size }
+    }
+
+    /// The code of each chunk.
+    pub(super) fn calls(&self) -> &[Call] {
+        &self.calls
     }
 
     /// Runs some chunks in order.
@@ -98,7 +112,7 @@ impl Code {
     pub(super) fn run(&self, chunks: Range<usize>, image: &mut [u8], now: i64) {
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
         let image = image.as_mut_ptr();
-        for Call { entry, bases: [a, b, c, d, e] } in &self.calls[chunks] {
+        for Call { entry, bases: [a, b, c, d, e], .. } in &self.calls[chunks] {
             let at = |base: u32| image.wrapping_add(base as usize);
             let (a, b, c, d, e) = (at(*a), at(*b), at(*c), at(*d), at(*e));
             // SAFETY: the chunk reads and writes the slots of its layout, at the pointers' offsets from the image,

@@ -17,6 +17,10 @@ pub(super) fn name(diagram: &mut Diagram, signatures: &Signatures) {
 
 fn name_of(block: &mut Block, signatures: &Signatures) {
     let standard = signatures.is_standard(&block.type_name.text);
+    // Some tools name every box, though a function has no instance.
+    if signatures.is_function(&block.type_name.text) && !signatures.is_known_block(&block.type_name.text) {
+        block.instance = None;
+    }
     match (&block.instance, Function::from_name(&block.type_name.text)) {
         (Some(_), _) => {
             let Some(known) = StandardBlock::from_name(&block.type_name.text).filter(|_| standard) else { return };
@@ -43,6 +47,12 @@ fn is_enable(name: &str) -> bool {
 
 /// The operands of a function are its parameters in order, unless all have names that say another order.
 fn inputs(block: &mut Block, function: Function) {
+    let pins = block.inputs.iter_mut().map(|pin| &mut pin.name.text).filter(|name| !is_enable(name)).collect();
+    operands(pins, function);
+}
+
+/// Gives operands the names of the parameters in their places, unless all have names that say another order.
+pub(in crate::frontend) fn operands(pins: Vec<&mut String>, function: Function) {
     let parameter = |place: usize| match function {
         Function::Standard(function) => function.parameter(place).map(|parameter| parameter.name),
         Function::Convert { .. } | Function::Truncate { .. } => (place == 0).then_some("IN"),
@@ -51,26 +61,24 @@ fn inputs(block: &mut Block, function: Function) {
         Function::Standard(function) => function.place(name),
         Function::Convert { .. } | Function::Truncate { .. } => name.eq_ignore_ascii_case("IN").then_some(0),
     };
-    let operands = || block.inputs.iter().filter(|pin| !is_enable(&pin.name.text));
-    let count = operands().count();
+    let count = pins.len();
     let is_place = |place: Option<usize>| place.is_some_and(|place| place < count);
-    if operands().all(|pin| is_place(place_of(&pin.name.text))) {
+    if pins.iter().all(|pin| is_place(place_of(pin))) {
         return;
     }
     let numbered = |name: &str| {
         let digits = name.trim_start_matches(|first: char| first.is_ascii_alphabetic());
         name.len() - digits.len() <= 2 && digits.bytes().all(|byte| byte.is_ascii_digit())
     };
-    if !operands().all(|pin| numbered(&pin.name.text)) {
+    if !pins.iter().all(|pin| numbered(pin)) {
         return;
     }
-    let pins = block.inputs.iter_mut().filter(|pin| !is_enable(&pin.name.text));
-    for (place, pin) in pins.enumerate() {
+    for (place, pin) in pins.into_iter().enumerate() {
         let Some(known) = parameter(place) else { return };
         // Behind the listed ones they count on, from the number of the last one.
         let numbers = (place.saturating_sub(1)..=place + 1).map(|number| format!("IN{number}"));
         let name = [known.to_owned()].into_iter().chain(numbers).find(|name| place_of(name) == Some(place));
-        pin.name.text = name.unwrap_or_else(|| known.to_owned());
+        *pin = name.unwrap_or_else(|| known.to_owned());
     }
 }
 

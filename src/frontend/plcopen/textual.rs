@@ -6,6 +6,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
 use crate::frontend::graph::coil_kind;
 use crate::frontend::graph::expression;
+use crate::frontend::graph::pins;
 use crate::frontend::graph::report::Report;
 use crate::frontend::graph::types::{Scope, Signatures};
 use crate::ladder::functions::Function;
@@ -185,7 +186,14 @@ fn block(
         };
         arguments.push(Argument { pin: Name::new(name, pin.span()), wire, span: pin.span() });
     }
-    let (instance, type_name) = match instance {
+    // Every box has a name there, functions too.
+    let function = Function::from_name(type_name).filter(|_| around.signatures.is_standard(type_name));
+    if let Some(function) = function {
+        let inputs = arguments.iter_mut().filter(|argument| !matches!(argument.wire, Wire::Output(_)));
+        let names = inputs.map(|argument| &mut argument.pin.text).filter(|name| !name.eq_ignore_ascii_case("EN"));
+        pins::operands(names.collect(), function);
+    }
+    let (instance, type_name) = match instance.filter(|_| !around.signatures.is_function(type_name)) {
         Some(instance) => (instance, Some(Name::new(type_name, span))),
         None => (Reference::of_name(Name::new(type_name, span)), None),
     };
