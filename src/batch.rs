@@ -3,7 +3,8 @@
 //! A plant is a process image of its own; all have one `now`. They run in **parts** of up to 512, a bit each
 //! ([`engine::lanes`](crate::engine::lanes)), and the parts on all cores. Every plant computes exactly what it would
 //! alone: where the lanes cannot do something for all of them at once (a time that goes back, a timer's start that is
-//! set from outside), that part goes on with an interpreter for each plant, slower and as exact. Nothing here may do I/O
+//! set from outside), that part goes on with an interpreter for each plant, slower and as exact. Nothing here may do
+//! I/O
 //! or read a clock.
 //!
 //! ```
@@ -92,11 +93,13 @@ impl Variable {
 }
 
 impl Batch {
-    /// So many plants of a verified program, at least one, before their first scan: every variable holds its initial value.
+    /// So many plants of a verified program, at least one, before their first scan: every variable holds its initial
+    /// value.
     /// Optimised programs run faster. Where there is no code for this machine's vectors, plants are interpreted.
     ///
     /// # Errors
-    /// [`BatchError::NoLanes`] for no plant at all, [`BatchError::TooLarge`] when their images come to more than 64 GiB.
+    /// [`BatchError::NoLanes`] for no plant at all, [`BatchError::TooLarge`] when their images come to more than 64
+    /// GiB.
     pub fn new(program: &Program, lanes: usize) -> Result<Self, BatchError> {
         if lanes == 0 {
             return Err(BatchError::NoLanes);
@@ -172,7 +175,8 @@ impl Batch {
         (0..self.parts.len()).try_for_each(|part| self.part(part).set_all(variable, value))
     }
 
-    /// A BOOL variable in the lanes of a word, the first lane as the lowest bit; of another type, whether it is other than
+    /// A BOOL variable in the lanes of a word, the first lane as the lowest bit; of another type, whether it is other
+    /// than
     /// 0. Bits beyond the last lane are 0.
     ///
     /// # Errors
@@ -182,7 +186,8 @@ impl Batch {
         self.part(word / PART_WORDS).word(word % PART_WORDS, variable)
     }
 
-    /// Sets a BOOL variable in the lanes of a word, the first lane by the lowest bit. Bits beyond the last lane do not count.
+    /// Sets a BOOL variable in the lanes of a word, the first lane by the lowest bit. Bits beyond the last lane do not
+    /// count.
     ///
     /// # Errors
     /// [`BatchError::NoSuchLane`] when there is no such word, [`BatchError::WrongType`] when it is no BOOL.
@@ -201,7 +206,8 @@ impl Batch {
         }
     }
 
-    /// Does something with every part, on all cores, such as many scans with inputs before each: parts need not wait for one
+    /// Does something with every part, on all cores, such as many scans with inputs before each: parts need not wait
+    /// for one
     /// another. Gives the results in the order of the parts.
     pub fn each<R: Send>(&mut self, work: impl Fn(Part<'_>) -> R + Sync) -> Vec<R> {
         let (shared, lanes) = (&self.shared, self.lanes);

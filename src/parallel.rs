@@ -3,7 +3,8 @@
 use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Does something for each of so many pieces, by their numbers, on all cores; gives the results in order. Each core starts
+/// Does something for each of so many pieces, by their numbers, on all cores; gives the results in order. Each core
+/// starts
 /// with something of its own, as memory to work in.
 ///
 /// # Panics

@@ -162,7 +162,8 @@ impl<'b> Part<'b> {
         (0..self.lanes).try_for_each(|lane| self.set(lane, variable, value))
     }
 
-    /// A BOOL variable in the lanes of a word, the first as the lowest bit; of another type, whether it is other than 0.
+    /// A BOOL variable in the lanes of a word, the first as the lowest bit; of another type, whether it is other than
+    /// 0.
     ///
     /// # Errors
     /// [`BatchError::NoSuchLane`] when there is no such word.

@@ -68,7 +68,8 @@ impl RandomInputs {
         });
     }
 
-    /// What one lane gets in so many scans, `cycle` nanoseconds apart, as stimuli; together with others that all lanes get.
+    /// What one lane gets in so many scans, `cycle` nanoseconds apart, as stimuli; together with others that all lanes
+    /// get.
     pub fn stimuli_of(mut self, lane: usize, cycle: i64, scans: u64, others: &Stimuli) -> Stimuli {
         let fixed = others.rows().flat_map(|row| row.settings.iter().map(move |setting| (row.time, *setting)));
         let mut settings: Vec<(i64, Setting)> = fixed.collect();

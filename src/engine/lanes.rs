@@ -1,7 +1,9 @@
 //! Lanes: many plants of one program in one pass, a bit each.
 //!
-//! A BOOL is a word of four times 128 bits, and one vector instruction does an operation for 128 lanes. Everything else is,
-//! in general, a column of as many values ([`columns`]). What timers keep needs neither: it is recognised by the flow of
+//! A BOOL is a word of four times 128 bits, and one vector instruction does an operation for 128 lanes. Everything
+//! else is,
+//! in general, a column of as many values ([`columns`]). What timers keep needs neither: it is recognised by the flow
+//! of
 //! values, and only *when* it was set is kept ([`recognise`] has the proof, [`track`] and [`history`] the means).
 //! Every lane computes exactly what a scalar engine does: `now` is one for all lanes, nothing is quantised, and what
 //! cannot be told in this way is refused ([`Refused`]), never computed otherwise.
@@ -41,7 +43,8 @@ pub const VECTOR_LANES: usize = word::VECTOR_LANES;
 /// The most words that code can reach.
 const MOST_WORDS: usize = 1 << 24;
 
-/// What the lanes of a group cannot do, since it would not be the same for all of them, or not in order: a scalar engine
+/// What the lanes of a group cannot do, since it would not be the same for all of them, or not in order: a scalar
+/// engine
 /// can, for each lane on its own.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Refused;
@@ -105,7 +108,8 @@ impl Lanes {
         Ok(Self { layout: program.layout.clone(), plan, segments, sums, turns, dues, all_run })
     }
 
-    /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond them
+    /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond
+    /// them
     /// are there, but may not be scanned.
     pub fn group(&self, lanes: usize) -> Group {
         let presets = self.plan.presets.iter().map(|preset| preset.nanoseconds);

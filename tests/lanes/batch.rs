@@ -104,7 +104,8 @@ fn an_image_that_a_scan_left_is_taken_without_falling_back() {
 fn tasks_with_intervals_run_in_all_lanes_or_in_none() {
     let program = program(
         "task slow(interval := 30ms)\nprogram quick\ninput a\noutput q\nrung\n  a t:TON(PT := T#20ms) (q)\n\
-         program slowly with slow\ninput b\noutput r\noutput n : INT\nrung\n  b u:TOF(PT := T#50ms) (r)\nrung\n  ^b {n := n + 1}\n",
+         program slowly with slow\ninput b\noutput r\noutput n : INT\nrung\n  b u:TOF(PT := T#50ms) (r)\n\
+         rung\n  ^b {n := n + 1}\n",
     );
     let mut rig = Rig::new(&program, 131);
     for scan in 0..200i64 {

@@ -201,8 +201,9 @@ impl Run<'_> {
         }
         let now = i64::try_from(scan).unwrap_or(i64::MAX).saturating_mul(cycle);
         let text = format!(
-            "the assertion `{}` does not hold in lane {lane} after scan {scan}, at {}, of seed {seed}; {failed} of {} plants \
-             fail\n  hint: the same options with `--seed {seed} --lane {lane} --scans {}` in place of `--lanes` trace it ({})",
+            "the assertion `{}` does not hold in lane {lane} after scan {scan}, at {}, of seed {seed}; {failed} of {} \
+             plants fail\n  hint: the same options with `--seed {seed} --lane {lane} --scans {}` in place of `--lanes` \
+             trace it ({})",
             self.assertions[assertion].text,
             time::exact(now),
             batch.lanes(),

@@ -42,7 +42,8 @@ impl Segments {
         synchronise(&pages)?;
         let function = |(segment, start): (&Code, &usize)| {
             let code = pages[*start..].as_ptr();
-            // SAFETY: at `code` lies the whole of a function that Cranelift compiled for this machine with the signature
+            // SAFETY: at `code` lies the whole of a function that Cranelift compiled for this machine with the
+            // signature
             // `Function` and the C calling convention; `_pages` keeps it there as long as the function is known.
             (unsafe { std::mem::transmute::<*const u8, Function>(code) }, segment.reach)
         };
@@ -53,7 +54,8 @@ impl Segments {
     /// Runs a segment, of so many words one after the other, of which so many vectors.
     ///
     /// # Panics
-    /// When there are fewer words, or fewer of a row, than the segment was made for and is moved on by; or none, or more
+    /// When there are fewer words, or fewer of a row, than the segment was made for and is moved on by; or none, or
+    /// more
     /// vectors than a word has.
     #[inline]
     pub(in crate::engine) fn run(
@@ -67,7 +69,8 @@ impl Segments {
         let fits = count > 0 && words.len() >= reach + count - 1 && row.len() + 1 >= row_reach + count;
         assert!(fits && (1..=VECTORS).contains(&vectors), "too few words for the program");
         let turns = i64::try_from((count - 1) * VECTORS + vectors).unwrap_or(i64::MAX);
-        // SAFETY: in each turn the function reads and writes vectors, aligned as such, of the words below its two reaches, and
+        // SAFETY: in each turn the function reads and writes vectors, aligned as such, of the words below its two
+        // reaches, and
         // moves both pointers on by one vector, `count` words at the most; both slices are as long. They are borrowed
         // mutably, so that nobody else sees them, and are apart.
         unsafe { function(words.as_mut_ptr(), row.as_mut_ptr(), turns) }

@@ -107,7 +107,8 @@ impl History {
         }
     }
 
-    /// Finds out whether the next scans, after equal steps, need no look at each preset: one goes on by one scan with each
+    /// Finds out whether the next scans, after equal steps, need no look at each preset: one goes on by one scan with
+    /// each
     /// of them once the last scan that it reaches is in the run of equal steps, since `now - start` is then the same
     /// for both; one that reaches no scan yet stays until its time comes.
     fn foresee(&mut self) {

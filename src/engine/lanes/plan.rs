@@ -1,8 +1,10 @@
 //! What is done with the lanes in a scan, and where everything of them lies: made once of a program, without Cranelift.
 //!
 //! A chunk becomes pieces that run one after another: **segments** of operations on whole words, for
-//! [`compile`](super::compile), and runs of **steps** on columns, for [`columns`](super::columns). As many operations as
-//! can go into one piece do: a piece ends only where the next needs what it made. A BOOL that is needed in another piece
+//! [`compile`](super::compile), and runs of **steps** on columns, for [`columns`](super::columns). As many operations
+//! as
+//! can go into one piece do: a piece ends only where the next needs what it made. A BOOL that is needed in another
+//! piece
 //! waits in a word of its own.
 
 mod chunk;
@@ -77,7 +79,8 @@ pub(super) struct Track {
     pub(super) since: Vec<(usize, usize)>,
 }
 
-/// Tracked slots with codes of as many bits, at least one. In a row stand the lowest bits of all of them, then the next.
+/// Tracked slots with codes of as many bits, at least one. In a row stand the lowest bits of all of them, then the
+/// next.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Class {
     pub(super) bits: usize,
@@ -88,7 +91,8 @@ pub(super) struct Class {
 }
 
 impl Class {
-    /// Words that sum up a slot's codes: whether there is any, the bits of its row's number, and its bits, of more than one.
+    /// Words that sum up a slot's codes: whether there is any, the bits of its row's number, and its bits, of more
+    /// than one.
     pub(super) fn sums(&self) -> usize {
         1 + ROW_BITS + if self.bits > 1 { self.bits } else { 0 }
     }

@@ -5,7 +5,8 @@ use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, Not};
 
 use super::LANES;
 
-/// Vectors of 128 bits in a word, which code goes through one after the other. Four are a line of the cache, of which so
+/// Vectors of 128 bits in a word, which code goes through one after the other. Four are a line of the cache, of which
+/// so
 /// nothing is fetched in vain, and code that is fetched once runs four times; more would not fit beside each other.
 pub(in crate::engine) const VECTORS: usize = 4;
 

@@ -1,6 +1,7 @@
 //! The sums of an epoch, of all slots of a class: for each lane the last code that is not 0, and in which row.
 //!
-//! A turn for each vector of each slot; the rows are joined in pairs, and the pairs in pairs. Of two, the later counts in the
+//! A turn for each vector of each slot; the rows are joined in pairs, and the pairs in pairs. Of two, the later counts
+//! in the
 //! lanes in which it has a code, else the earlier: so the bit of the row's number that tells the two apart is whether
 //! the later has one.
 //!
@@ -25,7 +26,8 @@ struct Node {
     code: Vec<Value>,
 }
 
-/// Fills a function with the sums of a class. Each kind of sum is one run of words, as [`Class::sums`] counts them: any,
+/// Fills a function with the sums of a class. Each kind of sum is one run of words, as [`Class::sums`] counts them:
+/// any,
 /// the number's bits, the code's.
 pub(super) fn sums<'f>(
     plan: &Plan,
