@@ -1,25 +1,21 @@
 //! Tracked slots, of all lanes of a group: which choice was taken last, and in which scan.
 //!
-//! A scan leaves a **row** of codes: for each tracked slot, in each lane, which of its [leaves](Leaf) it was given, or
-//! 0
+//! A scan leaves a **row** of codes: for each tracked slot, in each lane, which of its [leaves](Leaf) it was given, or 0
 //! where it kept what it held. A row costs the scan one store a bit. Rows of [`ROWS`] scans side by side, an **epoch**,
 //! are kept as they are; then they are summed up into the last code of each lane, other than 0, and the number of its
 //! scan as bit planes. So what a slot holds can be told at any time, exactly: the code and the scan are in the rows of
 //! this epoch or, where these are all 0, in the sums; and with them the value is the leaf's, at that scan.
 //!
 //! - A constant is itself, and `now` the time of that scan in the [`History`].
-//! - `now` minus a latch is that time minus what the latch held **before** that scan. That is found the same way, as
-//! long
+//! - `now` minus a latch is that time minus what the latch held **before** that scan. That is found the same way, as long
 //!   as the latch was not set since: by the rows before that scan, or the sums. When an epoch is summed up in which a
 //!   latch was set in the same scan or later, in a lane whose slot still holds an earlier difference, the value is
 //!   computed for that lane and kept as it is, as is what is written from outside.
 //!
 //! An **answer** is whether a latch was last set in one of the scans that a preset [reaches](History::reach), which are
-//! all before some number. Where that number lies in this epoch, it is whether no later row has the latch's bit. Else
-//! it
+//! all before some number. Where that number lies in this epoch, it is whether no later row has the latch's bit. Else it
 //! is whether the sums say so and no row of this epoch has the bit; of the sums, the answers for all numbers of one
-//! earlier epoch, a **window**, are computed at once, since the number goes on from scan to scan. At the end of an
-//! epoch
+//! earlier epoch, a **window**, are computed at once, since the number goes on from scan to scan. At the end of an epoch
 //! what was set in it is taken out of the windows, for it was set after any scan that they tell of.
 
 use std::ops::Range;
