@@ -141,6 +141,10 @@ codes! {
     BadSymbol = 906 Error "a prefix that is no identifier of C",
     TooLargeForTarget = 907 Error "the program is too large for the target",
     NotACName = 911 Error "a name that C cannot have",
+    // Lanes and assertions.
+    BadAssertion = 920 Error "an assertion that cannot be used",
+    AssertionFails = 921 Error "an assertion does not hold",
+    CannotBatch = 922 Error "so many plants cannot be run",
     // Running.
     BadTiming = 1001 Error "times that do not go together",
     CannotStart = 1002 Error "the program cannot be started",

@@ -10,6 +10,7 @@ pub mod elide;
 pub mod helpers;
 pub mod interp;
 pub mod jit;
+pub mod lanes;
 pub mod object;
 pub mod report;
 pub mod target;

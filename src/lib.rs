@@ -36,6 +36,7 @@
 //! [`frontend`] reads bytes into a [`ladder::Program`]; [`check`] resolves it to a [`check::Checked`]; [`lower`]
 //! turns that into one straight-line scan of [`logic`], which [`opt`] improves and [`engine`] interprets or compiles.
 
+pub mod batch;
 pub mod check;
 pub mod cli;
 pub mod controller;
@@ -53,9 +54,11 @@ pub mod logic;
 pub mod lower;
 pub mod mathematics;
 pub mod opt;
+mod parallel;
 pub mod replay;
 pub mod simulate;
 pub mod source;
 pub mod trace;
 
+pub use batch::Batch;
 pub use controller::{Controller, Engine, Error, Retained, Settings, Variable};

@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+pub mod assertion;
 pub mod decimal;
 mod stimuli;
 #[cfg(test)]

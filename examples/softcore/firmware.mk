@@ -16,8 +16,9 @@ CYCLE_MS ?= 100
 # One folder for each program, so that what was built for one is never taken for another.
 BUILD ?= build/$(basename $(notdir $(PROGRAM)))
 OPT ?= -O2
+WARNINGS ?= -Wall -Wextra -Wpedantic -Werror
 
-override CFLAGS += $(OPT) -g -std=c99 -Wall -Wextra -Wpedantic -Werror -ffp-contract=off -I.. -I$(BUILD)
+override CFLAGS += $(OPT) -g -std=c99 $(WARNINGS) -ffp-contract=off -I.. -I$(BUILD)
 
 ifneq ($(MEMORY),)
 override LDFLAGS += -T $(MEMORY)

@@ -1,5 +1,7 @@
 //! `rung sim`: a program in virtual time.
 
+mod lanes;
+
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::ValueEnum;
 use rung_runtime::Scan;
 
-use super::run::difference;
+use super::run::{difference, time};
 use super::{Failure, Missing, WholeFile, cannot_write, duration, load_checked, read_source, report, tasks};
 use crate::diagnostic::Code;
 use crate::engine::both::Difference;
@@ -20,7 +22,7 @@ use crate::logic::{Layout, Program};
 use crate::lower::lower;
 use crate::opt::optimise;
 use crate::replay::{Replay, source_hash};
-use crate::simulate::{Schedule, Simulation, Stimuli};
+use crate::simulate::{Schedule, Simulation, Stimuli, assertion};
 use crate::source::Source;
 use crate::trace::{CsvTrace, Period, Signal, SvgTrace, Trace, VcdTrace};
 
@@ -61,6 +63,8 @@ pub(super) struct Arguments {
     /// Run the scans of a replay file, which `rung run --engine both` leaves at a difference
     #[arg(long, value_name = "FILE", conflicts_with_all = ["stimuli", "cycle", "scans", "duration"])]
     replay: Option<PathBuf>,
+    #[command(flatten)]
+    many: lanes::Plants,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
@@ -75,23 +79,43 @@ enum Engine {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
-    let program = lower(&checked, &loaded.source, None)
+    let mut program = lower(&checked, &loaded.source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
+    // The image as a replay and its layout's hash know it.
+    let plain = program.layout.clone();
+    let assertions = (arguments.many.assertions.iter())
+        .map(|text| {
+            let holds = assertion::assert(&mut program, text)
+                .map_err(|(source, problems)| Failure::diagnostics(&source, &problems))?;
+            Ok(lanes::Assertion { text: text.clone(), holds })
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
     let program = optimise(program);
     let signals = match &arguments.signals {
         None => Signal::all(&program.layout),
         Some(names) => Signal::select(&program.layout, names)
             .map_err(|name| Failure::new(Code::UndeclaredName, format!("there is no variable `{name}` to trace")))?,
     };
-    let course = Course::read(arguments, &loaded.source, &program)?;
+    let course = Course::read(arguments, &loaded.source, &program, &plain)?;
+    if let (Some(lanes), Course::Stimulated(stimuli, schedule)) = (arguments.many.lanes, &course) {
+        let stop = catch_interrupts()?;
+        let run = lanes::Run {
+            file: &arguments.file,
+            arguments: &arguments.many,
+            program: &program,
+            signals: arguments.signals.as_deref(),
+            schedule: *schedule,
+            stimuli,
+            assertions: &assertions,
+            stop: &stop,
+        };
+        return run.run(lanes);
+    }
     // Made before the outputs, so that what cannot be compiled leaves nothing.
     let mut engines = Engines::new(arguments.engine, arguments.elide, &program)?;
     let paths = trace_paths(&arguments.trace)?;
     // Where it would end the process at once, a temporary file would be left beside each output.
-    let stop = Arc::new(AtomicBool::new(false));
-    let asked = Arc::clone(&stop);
-    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
-        .map_err(|error| Failure::new(Code::CannotStart, format!("Ctrl-C cannot be caught: {error}")))?;
+    let stop = catch_interrupts()?;
     let mut files = paths.iter().map(|(path, _)| WholeFile::create(path)).collect::<Result<Vec<_>, _>>()?;
     let mut outputs = Vec::new();
     for ((path, format), file) in paths.iter().zip(&mut files) {
@@ -105,6 +129,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut simulation = course.start(&program.layout);
     let mut beside = course.start(&program.layout);
+    let (mut scan, mut failed) = (0u64, None);
     while let Some(now) = simulation.step(&mut *engines.first) {
         if stop.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted);
@@ -116,6 +141,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 return Err(Failure::new(Code::EnginesDiffer, format!("the engines differ\n  {found}")));
             }
         }
+        if failed.is_none() {
+            let fails = |one: &&lanes::Assertion| !program.layout.slot(one.holds).read(simulation.image()).is_true();
+            failed = assertions.iter().find(fails).map(|assertion| (assertion, scan, now));
+        }
+        scan += 1;
         let mut closed = false;
         for (path, trace) in &mut outputs {
             match trace.record(now, simulation.image()).map_err(|error| cannot_write(path, &error)) {
@@ -137,7 +167,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (path, mut trace) in outputs {
         unless_closed(trace.finish().map_err(|error| cannot_write(path, &error)))?;
     }
-    files.into_iter().try_for_each(|file| unless_closed(file.finish()))
+    files.into_iter().try_for_each(|file| unless_closed(file.finish()))?;
+    match failed {
+        None => Ok(()),
+        Some((assertion, scan, now)) => {
+            let (text, now) = (&assertion.text, time::exact(now));
+            let message = format!("the assertion `{text}` does not hold after scan {scan}, at {now}");
+            Err(Failure::new(Code::AssertionFails, message))
+        }
+    }
+}
+
+/// What is TRUE once Ctrl-C was pressed, which then ends nothing by itself.
+fn catch_interrupts() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::new(Code::CannotStart, format!("Ctrl-C cannot be caught: {error}")))?;
+    Ok(stop)
 }
 
 /// A result in which a closed standard output is none.
@@ -205,17 +252,17 @@ enum Course {
 }
 
 impl Course {
-    fn read(arguments: &Arguments, drawn: &Source, program: &Program) -> Result<Self, Failure> {
+    fn read(arguments: &Arguments, drawn: &Source, program: &Program, plain: &Layout) -> Result<Self, Failure> {
         let layout = &program.layout;
         if let Some(path) = &arguments.replay {
             let source = read_source(path)?;
-            let replay = Replay::parse(&source).and_then(|replay| replay.check(layout).map(|()| replay));
+            let replay = Replay::parse(&source).and_then(|replay| replay.check(plain).map(|()| replay));
             let replay = replay.map_err(|problem| Failure::diagnostics(&source, &[problem]))?;
             if replay.source_hash != source_hash(drawn) {
                 let (path, recorded) = (path.display(), &replay.program);
                 report(&format!("note: the program's text has changed since {path} was recorded from {recorded}\n"));
             }
-            return Ok(Self::Replayed(replay));
+            return Ok(Self::Replayed(extended(replay, plain, layout)));
         }
         let stimuli = match &arguments.stimuli {
             None => Stimuli::default(),
@@ -232,6 +279,9 @@ impl Course {
             (None, None) => Schedule::covering(cycle, &stimuli),
         };
         match schedule {
+            Some(schedule) if arguments.many.random() && arguments.many.lanes.is_none() => {
+                Ok(Self::Stimulated(arguments.many.stimuli_of_one(layout, schedule, &stimuli), schedule))
+            }
             Some(schedule) => Ok(Self::Stimulated(stimuli, schedule)),
             None => Err(Failure::new(Code::OutOfRange, "the last scan would come after the end of time, in 292 years")),
         }
@@ -250,6 +300,18 @@ impl Course {
             Self::Replayed(replay) => Period::of(replay.scans.iter().map(|scan| scan.now)),
         }
     }
+}
+
+/// A replay over an image that has more slots behind its own.
+fn extended(mut replay: Replay, plain: &Layout, layout: &Layout) -> Replay {
+    if let Some(image) = &mut replay.start_image {
+        let mut whole = layout.initial_image();
+        for slot in plain.slots() {
+            slot.write(&mut whole, slot.read(image));
+        }
+        *image = whole;
+    }
+    replay
 }
 
 /// The engine that is traced, and the one that it is compared with.

@@ -259,7 +259,7 @@ impl<'a> Compiler<'a> {
 
 /// What [`Context::compile`] does without optimisation, but that block parameters with one source stay: see
 /// `Lowering::settled`.
-fn generate(context: &mut Context, isa: &dyn TargetIsa) -> CodegenResult<CompiledCode> {
+pub(super) fn generate(context: &mut Context, isa: &dyn TargetIsa) -> CodegenResult<CompiledCode> {
     context.verify_if(isa)?;
     context.compute_cfg();
     context.compute_domtree();

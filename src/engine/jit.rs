@@ -4,6 +4,7 @@
 
 mod edited;
 mod memory;
+pub(super) mod segments;
 #[cfg(test)]
 mod tests;
 

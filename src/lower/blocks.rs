@@ -121,6 +121,20 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// The constant on an input if it is the same in every run of the instance: it is wired so at its only call, and nobody
+    /// sets the pin otherwise.
+    pub(super) fn only_constant(&self, pin: usize) -> Option<Value> {
+        match self.inputs[pin] {
+            Wired::Value(_, constant) if self.cells.inputs[pin].is_none() => constant,
+            Wired::Value(..) | Wired::Reference(_) => None,
+        }
+    }
+
+    /// Whether the instance is kept while the power is off.
+    pub(super) fn is_retained(&self) -> bool {
+        self.logic.layout().slot(self.cells.outputs[0].first).retain
+    }
+
     /// What the variable holds that a reference names, or the element of its array that many places behind it; the type's
     /// default where there is none.
     pub(super) fn register(&mut self, pin: usize, behind: u32) -> ValueId {

@@ -8,11 +8,12 @@ use std::collections::{HashMap, HashSet};
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::decimal::parse_milliseconds;
+use super::decimal::{Milliseconds, parse_milliseconds};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::{Elementary, Value};
 use crate::logic::{Layout, SlotId};
 use crate::source::{Source, Span};
+use crate::trace::Spelled;
 
 /// The name of the first column.
 const TIME_COLUMN: &str = "time_ms";
@@ -57,6 +58,55 @@ impl Stimuli {
     /// The rows, in order.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = Row<'_>> {
         (0..self.ends.len()).filter_map(|index| self.row(index))
+    }
+
+    /// Stimuli of settings at times in nanoseconds, 0 or more; those of one time stay in the order given.
+    pub fn of(settings: impl IntoIterator<Item = (i64, Setting)>) -> Self {
+        let mut settings: Vec<(i64, Setting)> = settings.into_iter().collect();
+        settings.sort_by_key(|(time, _)| *time);
+        let mut stimuli = Self::default();
+        for (time, setting) in settings {
+            let end = stimuli.settings.len();
+            stimuli.settings.push(setting);
+            match stimuli.ends.last_mut() {
+                Some((last, last_end)) if *last == time => *last_end = end + 1,
+                _ => stimuli.ends.push((time, end + 1)),
+            }
+        }
+        stimuli
+    }
+
+    /// The table that [`Stimuli::parse`] reads as these stimuli for the same image. A row for each time, and more for a
+    /// time at which a variable is set more than once.
+    pub fn to_csv(&self, layout: &Layout) -> String {
+        let mut columns: Vec<SlotId> = self.settings.iter().map(|setting| setting.slot).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let name = |slot: &SlotId| {
+            let observed = layout.observed().iter().find(|observed| observed.slot == *slot);
+            observed.map_or(String::new(), |observed| observed.name.clone())
+        };
+        let places: HashMap<SlotId, usize> = columns.iter().copied().zip(1..).collect();
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let header = std::iter::once(TIME_COLUMN.to_owned()).chain(columns.iter().map(name));
+        // Writing to a vector does not fail.
+        let _ = table.write_record(header);
+        for row in self.rows() {
+            let empty = || {
+                let mut cells = vec![String::new(); columns.len() + 1];
+                cells[0] = Milliseconds(row.time).to_string();
+                cells
+            };
+            let mut cells = empty();
+            for setting in row.settings {
+                if !cells[places[&setting.slot]].is_empty() {
+                    let _ = table.write_record(std::mem::replace(&mut cells, empty()));
+                }
+                cells[places[&setting.slot]] = Spelled(setting.value).to_string();
+            }
+            let _ = table.write_record(cells);
+        }
+        String::from_utf8(table.into_inner().unwrap_or_default()).unwrap_or_default()
     }
 
     /// Reads stimuli for an image. Columns are the names of [`Layout::observed`], in any case and order.

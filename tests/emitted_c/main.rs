@@ -8,6 +8,7 @@ mod interface;
 mod programs;
 mod random;
 mod rig;
+mod straight_line;
 
 #[path = "../support"]
 mod support {

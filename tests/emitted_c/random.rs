@@ -7,7 +7,8 @@ use rung_runtime::Scan;
 
 use crate::rig::{CHECKED, CLANG, Compiler, GCC, GCC_NARROW, GCC_PLAIN, Rig, TCC};
 
-const SEEDS: u64 = 60;
+/// Programs for each compiler, and scans of each. `RUNG_SEEDS` and `RUNG_FIRST_SEED` look at others.
+const SEEDS: u64 = 24;
 const SCANS: u64 = 30;
 
 fn programs(first: u64) -> Vec<Program> {

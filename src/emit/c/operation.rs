@@ -185,10 +185,7 @@ impl Body<'_> {
                 Compare::Equal | Compare::NotEqual => {}
             }
         }
-        // Compilers see where bits are compared with what they can never be, and warn.
-        let bits = |of: &Expression| [" & ", " | "].iter().any(|operator| of.text.contains(operator));
-        let a = if b.constant.is_some() && bits(&a) { self.named(a_id, &a) } else { a };
-        let b = if a.constant.is_some() && bits(&b) { self.named(b_id, &b) } else { b };
+        let (a, b) = (self.comparable(a_id, a), self.comparable(b_id, b));
         let operator = match op {
             Compare::Equal => "==",
             Compare::NotEqual => "!=",
@@ -198,6 +195,13 @@ impl Body<'_> {
             Compare::GreaterOrEqual => ">=",
         };
         Expression::infix(&a.tight(), operator, &b.tight(), Form::Exact, &[&a, &b]).cast("uint8_t", Form::Exact)
+    }
+
+    /// An operand of a comparison. One that is made of bits gets a name: compilers see where bits are compared with what
+    /// they can never be, and warn.
+    fn comparable(&mut self, id: ValueId, taken: Expression) -> Expression {
+        let is_bits = [" & ", " | ", " ^ "].iter().any(|operator| taken.text.contains(operator));
+        if is_bits && !self.ty(id).is_real() { self.named(id, &taken) } else { taken }
     }
 
     pub(super) fn select(&mut self, condition: ValueId, a: ValueId, b: ValueId) -> Expression {
@@ -214,8 +218,9 @@ impl Body<'_> {
         }
         match (from.is_real(), to.is_real()) {
             _ if to == Elementary::Bool => {
-                let (a, zero) = (self.exact(a), Expression::constant(from, 0));
-                Expression::infix(&a.tight(), "!=", &zero.text, Form::Exact, &[&a]).cast("uint8_t", Form::Exact)
+                let (taken, zero) = (self.exact(a), Expression::constant(from, 0));
+                let taken = self.comparable(a, taken);
+                Expression::infix(&taken.tight(), "!=", &zero.text, Form::Exact, &[&taken]).cast("uint8_t", Form::Exact)
             }
             (false, false) => {
                 let a = self.take(a);

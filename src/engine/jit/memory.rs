@@ -132,13 +132,13 @@ impl Code {
 /// Makes the processor fetch what was written: x86-64 does so by itself.
 #[cfg(target_arch = "x86_64")]
 #[expect(clippy::unnecessary_wraps, reason = "elsewhere it can fail")]
-fn synchronise(_: &Mmap) -> io::Result<()> {
+pub(super) fn synchronise(_: &Mmap) -> io::Result<()> {
     Ok(())
 }
 
 /// Makes the processor, on every core, fetch what was written.
 #[cfg(not(target_arch = "x86_64"))]
-fn synchronise(pages: &Mmap) -> io::Result<()> {
+pub(super) fn synchronise(pages: &Mmap) -> io::Result<()> {
     // SAFETY: the range is mapped and readable.
     let cleared = unsafe { wasmtime_internal_jit_icache_coherence::clear_cache(pages.as_ptr().cast(), pages.len()) };
     cleared

@@ -4,7 +4,11 @@
 //!
 //! The three states of the source need no state of their own: with the input's last value (`previous`) and the
 //! output, which timer is idle, timing or expired can be told. Each rule says how. "start + PT <= now" is computed as
-//! "now - start >= PT", which is the same where nothing overflows, and then right as well.
+//! "now - start >= PT", which is the same where nothing overflows, and then right as well. The start is moved along with
+//! the time while a timer is not timing, so that what has elapsed is then 0 and needs no choice.
+//!
+//! A preset that is [`fixed`] makes a timer shorter by a third: it has not passed where nothing has elapsed, what has
+//! expired stays so by the time alone, and ET of an expired timer is the preset.
 
 use super::{Rule, Rules, Run};
 use crate::elementary::{Elementary, Value};
@@ -28,68 +32,72 @@ pub(super) const RULES: Rules = &[
 
 /// On-delay. Idle while the input was off; else expired while Q is on, else timing.
 fn ton(run: &mut Run<'_>) {
-    let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
-    let clock = Clock::read(run);
+    let (on, was_on) = (run.input(IN), run.state(PREVIOUS));
     let stays_on = run.logic.and(on, was_on);
-    let expired = run.logic.or(q, clock.due);
-    let new_q = run.logic.and(stays_on, expired);
-    let et = run.output(ET);
-    let running = clock.elapsed_or_preset(run);
-    let held = run.logic.select(q, et, running);
-    let zero = run.logic.constant(Value::time(0));
-    let new_et = run.logic.select(stays_on, held, zero);
-    let new_start = run.logic.select(was_on, clock.start, clock.now);
-    run.set_state(START, new_start);
-    run.set_state(PREVIOUS, on);
-    run.set_output(Q, new_q);
-    run.set_output(ET, new_et);
+    let clock = Clock::going_on(run, stays_on);
+    let (new_q, new_et) = if fixed(run) {
+        (clock.due, run.logic.select(clock.due, clock.preset, clock.elapsed))
+    } else {
+        let (q, et) = (run.output(Q), run.output(ET));
+        let expired = run.logic.or(q, clock.due);
+        let new_q = run.logic.and(stays_on, expired);
+        let reached = run.logic.select(q, et, clock.preset);
+        (new_q, run.logic.select(new_q, reached, clock.elapsed))
+    };
+    finish(run, &clock, new_q, new_et);
 }
 
 /// Off-delay. Timing while the input was off and Q is on; expired while both are off.
 fn tof(run: &mut Run<'_>) {
-    let (on, was_on, q) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
-    let clock = Clock::read(run);
-    let not_due = run.logic.not(clock.due);
-    let falls_or_times = run.logic.or(was_on, not_due);
-    let delayed = run.logic.and(q, falls_or_times);
+    let (on, was_on, q, et) = (run.input(IN), run.state(PREVIOUS), run.output(Q), run.output(ET));
+    let fresh = run.logic.or(on, was_on);
+    let stays_off = run.logic.not(fresh);
+    let clock = Clock::going_on(run, stays_off);
+    // With a preset above 0 nothing is due where nothing has elapsed.
+    let due = if fixed(run) { clock.due } else { run.logic.and(stays_off, clock.due) };
+    let not_due = run.logic.not(due);
+    let delayed = run.logic.and(q, not_due);
     let new_q = run.logic.or(on, delayed);
-    let et = run.output(ET);
-    let was_off = run.logic.not(was_on);
-    let timing = run.logic.and(was_off, q);
-    let running = clock.elapsed_or_preset(run);
-    let off_et = run.logic.select(timing, running, et);
-    let zero = run.logic.constant(Value::time(0));
-    let new_et = run.logic.select(on, zero, off_et);
-    let new_start = run.logic.select(was_on, clock.now, clock.start);
-    run.set_state(START, new_start);
-    run.set_state(PREVIOUS, on);
-    run.set_output(Q, new_q);
-    run.set_output(ET, new_et);
+    let running = run.logic.select(due, clock.preset, clock.elapsed);
+    let not_expired = run.logic.or(on, q);
+    let new_et = run.logic.select(not_expired, running, et);
+    finish(run, &clock, new_q, new_et);
 }
 
 /// Pulse. Timing while Q is on; else expired while the input was on, else idle.
 fn tp(run: &mut Run<'_>) {
     let (on, was_on, timing) = (run.input(IN), run.state(PREVIOUS), run.output(Q));
-    let clock = Clock::read(run);
+    let clock = Clock::going_on(run, timing);
     let was_off = run.logic.not(was_on);
     let rises = run.logic.and(on, was_off);
-    let not_timing = run.logic.not(timing);
-    let begins = run.logic.and(rises, not_timing);
-    let not_due = run.logic.not(clock.due);
-    let goes_on = run.logic.and(timing, not_due);
-    let new_q = run.logic.or(begins, goes_on);
-    let et = run.output(ET);
-    let running = clock.elapsed_or_preset(run);
-    let held = run.logic.select(timing, running, et);
+    let begins_or_times = run.logic.or(timing, rises);
+    let due = if fixed(run) { clock.due } else { run.logic.and(timing, clock.due) };
+    let not_due = run.logic.not(due);
+    let new_q = run.logic.and(begins_or_times, not_due);
+    let reached = if fixed(run) {
+        clock.preset
+    } else {
+        let et = run.output(ET);
+        run.logic.select(timing, clock.preset, et)
+    };
     // Expired with the input off is idle, in the same scan.
-    let keeps = run.logic.or(on, goes_on);
     let zero = run.logic.constant(Value::time(0));
-    let new_et = run.logic.select(keeps, held, zero);
-    let new_start = run.logic.select(timing, clock.start, clock.now);
-    run.set_state(START, new_start);
-    run.set_state(PREVIOUS, on);
-    run.set_output(Q, new_q);
-    run.set_output(ET, new_et);
+    let at_rest = run.logic.select(on, reached, zero);
+    let new_et = run.logic.select(new_q, clock.elapsed, at_rest);
+    finish(run, &clock, new_q, new_et);
+}
+
+/// Whether the preset is one constant above zero in every run of the instance, and the time of its last run never lies
+/// ahead: a retained instance may have run last under a clock that was further on.
+fn fixed(run: &Run<'_>) -> bool {
+    run.only_constant(PT).is_some_and(|preset| preset.as_integer() > Some(0)) && !run.is_retained()
+}
+
+fn finish(run: &mut Run<'_>, clock: &Clock, q: ValueId, et: ValueId) {
+    run.set_state(START, clock.start);
+    run.set_state(PREVIOUS, run.input(IN));
+    run.set_output(Q, q);
+    run.set_output(ET, et);
 }
 
 /// Retentive on-delay. R clears and wins; else ET sums up the time between runs that both have IN, until it is PT;
@@ -122,24 +130,22 @@ fn tonr(run: &mut Run<'_>) {
 
 /// What a timer knows of the time.
 struct Clock {
-    now: ValueId,
+    /// The time at which it started; while it is not timing, now.
     start: ValueId,
+    /// The time since then.
     elapsed: ValueId,
     preset: ValueId,
-    /// Whether the preset has passed since the start.
+    /// Whether that is the preset or more.
     due: ValueId,
 }
 
 impl Clock {
-    fn read(run: &mut Run<'_>) -> Self {
+    /// That of a timer which keeps its start while `times`.
+    fn going_on(run: &mut Run<'_>, times: ValueId) -> Self {
         let (now, start, preset) = (run.logic.now(), run.state(START), run.input(PT));
+        let start = run.logic.select(times, start, now);
         let elapsed = run.logic.binary(Binary::Subtract, now, start);
         let due = run.logic.compare(Compare::GreaterOrEqual, elapsed, preset);
-        Self { now, start, elapsed, preset, due }
-    }
-
-    /// ET of a timer that is timing, or expires now.
-    fn elapsed_or_preset(&self, run: &mut Run<'_>) -> ValueId {
-        run.logic.select(self.due, self.preset, self.elapsed)
+        Self { start, elapsed, preset, due }
     }
 }

@@ -99,50 +99,64 @@ static inline @T select_@N(const uint8_t c, const @T a, const @T b)
 ",
     },
     Routine {
-        stem: "min",
-        types: &["u8", "i8", "u16", "i16", "u32", "i32"],
-        needs: &["select_@N"],
+        stem: "less",
+        types: &["u8", "i8", "u16", "i16"],
+        needs: &[],
         text: r"
-/* The lesser. */
-static inline @T min_@N(const @T a, const @T b)
+/* Whether a is less than b, from the sign of the difference: of a comparison and a choice compilers make a branch. */
+static inline uint8_t less_@N(const @T a, const @T b)
 {
-    return select_@N((uint8_t)(a < b), a, b);
+    return (uint8_t)(((uint32_t)a - (uint32_t)b) >> 31);
+}
+",
+    },
+    Routine {
+        stem: "less",
+        types: &["u32", "u64"],
+        needs: &[],
+        text: r"
+/* Whether a is less than b, from the borrow of the difference: of a comparison and a choice compilers make a branch. */
+static inline uint8_t less_@N(const @T a, const @T b)
+{
+    return (uint8_t)(((~a & b) | ((~a | b) & (a - b))) >> (@W - 1));
+}
+",
+    },
+    Routine {
+        stem: "less",
+        types: &["i32", "i64"],
+        needs: &[],
+        text: r"
+/* Whether a is less than b, from the sign of the difference: of a comparison and a choice compilers make a branch. */
+static inline uint8_t less_@N(const @T a, const @T b)
+{
+    const @U x = (@U)a;
+    const @U y = (@U)b;
+    return (uint8_t)(((x & ~y) | ((x | ~y) & (x - y))) >> (@W - 1));
 }
 ",
     },
     Routine {
         stem: "min",
-        types: &["u64", "i64"],
-        needs: &["select_@N", "lt_@N"],
+        types: INTEGERS,
+        needs: &["less_@N", "select_@N"],
         text: r"
 /* The lesser. */
 static inline @T min_@N(const @T a, const @T b)
 {
-    return select_@N(lt_@N(a, b), a, b);
+    return select_@N(less_@N(a, b), a, b);
 }
 ",
     },
     Routine {
         stem: "max",
-        types: &["u8", "i8", "u16", "i16", "u32", "i32"],
-        needs: &["select_@N"],
+        types: INTEGERS,
+        needs: &["less_@N", "select_@N"],
         text: r"
 /* The greater. */
 static inline @T max_@N(const @T a, const @T b)
 {
-    return select_@N((uint8_t)(a < b), b, a);
-}
-",
-    },
-    Routine {
-        stem: "max",
-        types: &["u64", "i64"],
-        needs: &["select_@N", "lt_@N"],
-        text: r"
-/* The greater. */
-static inline @T max_@N(const @T a, const @T b)
-{
-    return select_@N(lt_@N(a, b), b, a);
+    return select_@N(less_@N(a, b), b, a);
 }
 ",
     },
