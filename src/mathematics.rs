@@ -8,7 +8,7 @@
 //! look anything up in memory.
 //!
 //! The methods and the coefficients are those of fdlibm (Sun Microsystems, 1993), with everything computed that it
-//! branches between; angles are reduced in another way, see [`angle`].
+//! branches between; angles are reduced in another way, see `angle`.
 
 mod angle;
 mod exponential;
@@ -62,7 +62,7 @@ pub trait TruthValue:
 /// A way to compute, or to write down what is to be computed. All operations are total.
 ///
 /// The bits of a NaN that arithmetic made may be any: no result other than a NaN may depend on them, and a NaN that is a
-/// result comes from arithmetic or is [`NAN`], never from bits.
+/// result comes from arithmetic or is the canonical NaN, never from bits.
 pub trait Arithmetic: Copy {
     /// LREALs.
     type Real: RealNumber;

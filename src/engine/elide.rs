@@ -8,7 +8,7 @@
 //! that is not, and the one that finds the program still takes longer, and memory of its own; constant time is what machine
 //! code promises without. Results stay exact. The one thing that lags behind is what no program reads meanwhile, as the
 //! start that an idle timer keeps noting; [`Elided::settle`] catches it up, and so does the next scan that runs. What later
-//! times would change is the matter of [`forever`].
+//! times would change is the matter of `forever`.
 
 mod forever;
 #[cfg(test)]

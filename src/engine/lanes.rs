@@ -2,13 +2,13 @@
 //!
 //! A BOOL is a word of four times 128 bits, and one vector instruction does an operation for 128 lanes. Everything
 //! else is,
-//! in general, a column of as many values ([`columns`]). What timers keep needs neither: it is recognised by the flow
+//! in general, a column of as many values (`columns`). What timers keep needs neither: it is recognised by the flow
 //! of
-//! values, and only *when* it was set is kept ([`recognise`] has the proof, [`track`] and [`history`] the means).
+//! values, and only *when* it was set is kept (`recognise` has the proof, `track` and `history` the means).
 //! Every lane computes exactly what a scalar engine does: `now` is one for all lanes, nothing is quantised, and what
 //! cannot be told in this way is refused ([`Refused`]), never computed otherwise.
 //!
-//! [`plan`] sorts a program's operations, [`compile`] makes code of those on words. No engine may know a block.
+//! `plan` sorts a program's operations, `compile` makes code of those on words. No engine may know a block.
 
 mod columns;
 mod compile;

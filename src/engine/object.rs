@@ -1,7 +1,7 @@
 //! A relocatable object of a program, for any target: the same chunks that the JIT installs, and around them the
 //! functions and data of the [C interface](crate::interface).
 //!
-//! One lowering: what a rung computes is [`clif`](super::clif)'s, and only when chunks run, how an image starts and how
+//! One lowering: what a rung computes is [`clif`]'s, and only when chunks run, how an image starts and how
 //! time is latched is written here. An object must have no undefined symbol, no state but the tick counter and the
 //! ready-made image, and the same bytes each time it is built. No function of it may branch on data, but for the listed
 //! operations, the helpers, and the test in `P_scan` whether a task with an interval is due.

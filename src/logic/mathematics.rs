@@ -1,7 +1,7 @@
 //! The functions that [`Op::Call`] names, as programs of logic, so that any back end makes code of them without knowing more
 //! than it does.
 //!
-//! They are recorded from [`mathematics`](crate::mathematics), which also computes what
+//! They are recorded from [`mathematics`], which also computes what
 //! [`evaluate::helper`](super::evaluate::helper) says; so their results are the same, to the bit. Each is one chunk of one
 //! section without a call, and every operation in it takes the same time whatever it is given, as far as the target's do.
 //! Nothing may be computed here.
