@@ -23,6 +23,8 @@ pub struct Line {
     pub jumps: bool,
     /// Whether it calls.
     pub calls: bool,
+    /// Whether these are constants that the code jumps over, and no instruction.
+    pub is_data: bool,
 }
 
 /// Major opcodes of RISC-V that hold arithmetic and nothing that jumps or touches memory: OP-IMM, OP-IMM-32, OP, OP-32. The
@@ -30,7 +32,9 @@ pub struct Line {
 const ARITHMETIC: [u8; 4] = [0x13, 0x1B, 0x33, 0x3B];
 
 /// Decodes code for a target, up to the first bytes that are no instruction. Arithmetic of RISC-V that the disassembler
-/// does not know is shown as its number.
+/// does not know is shown as its number. In long functions for RISC-V some constants lie among the instructions, behind a jump
+/// over them: in a straight line nothing else jumps forward and always, so what is left out by it is data, and the jump none
+/// that counts.
 ///
 /// # Errors
 /// When the disassembler does not know the target.
@@ -40,12 +44,23 @@ pub fn lines(code: &[u8], target: &Triple) -> Result<Vec<Line>, String> {
     let mut at = 0;
     while at < code.len() {
         decode(&capstone, &code[at..], at as u64, &mut lines)?;
+        if let Some(end) = cut_at_constants(&mut lines, code, at, target) {
+            at = end;
+            continue;
+        }
         at = lines.last().map_or(0, |line: &Line| usize::try_from(line.offset).unwrap_or(0) + line.bytes.len());
         match (&code[at..], target.architecture) {
             ([first, b, c, d, ..], Architecture::Riscv64(_)) if ARITHMETIC.contains(&(first & 0x7F)) => {
                 let bytes = [*first, *b, *c, *d];
                 let text = format!(".insn {:#010x}", u32::from_le_bytes(bytes));
-                lines.push(Line { offset: at as u64, bytes: bytes.to_vec(), text, jumps: false, calls: false });
+                lines.push(Line {
+                    offset: at as u64,
+                    bytes: bytes.to_vec(),
+                    text,
+                    jumps: false,
+                    calls: false,
+                    is_data: false,
+                });
                 at += bytes.len();
             }
             _ => break,
@@ -69,9 +84,31 @@ fn decode(capstone: &Capstone, code: &[u8], offset: u64, lines: &mut Vec<Line>) 
             text: format!("{mnemonic} {operands}").trim_end().to_owned(),
             jumps: !returns && (is_of(CS_GRP_JUMP) || is_of(CS_GRP_CALL)),
             calls: is_of(CS_GRP_CALL),
+            is_data: false,
         });
     }
     Ok(())
+}
+
+/// Replaces what was decoded from `from` on, behind the first jump over constants, by these; gives where they end.
+fn cut_at_constants(lines: &mut Vec<Line>, code: &[u8], from: usize, target: &Triple) -> Option<usize> {
+    if !matches!(target.architecture, Architecture::Riscv64(_)) {
+        return None;
+    }
+    let place = |line: &Line| usize::try_from(line.offset).unwrap_or(usize::MAX);
+    let first = lines.iter().position(|line| place(line) >= from)?;
+    let (jump, end) = lines.iter().enumerate().skip(first).find_map(|(index, line)| {
+        let way = line.text.strip_prefix("c.j 0x").or_else(|| line.text.strip_prefix("j 0x"))?;
+        let end = place(line).checked_add(usize::from_str_radix(way, 16).ok()?)?;
+        (end > place(line) + line.bytes.len() && end <= code.len()).then_some((index, end))
+    })?;
+    lines.truncate(jump + 1);
+    let line = lines.last_mut()?;
+    line.jumps = false;
+    let start = place(line) + line.bytes.len();
+    let (bytes, text) = (code[start..end].to_vec(), ".data".to_owned());
+    lines.push(Line { offset: start as u64, bytes, text, jumps: false, calls: false, is_data: true });
+    Some(end)
 }
 
 fn decoder(target: &Triple) -> Result<Capstone, String> {

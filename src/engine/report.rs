@@ -186,6 +186,10 @@ fn count_function(function: &Function, triple: &Triple) -> Result<Cost, String> 
 fn count(code: &[u8], triple: &Triple) -> Result<Cost, String> {
     let mut cost = Cost::default();
     for line in disassemble::lines(code, triple)? {
+        if line.is_data {
+            cost.bytes += line.bytes.len();
+            continue;
+        }
         let (loads, stores) = memory(&line.text, triple.architecture);
         cost +=
             Cost { instructions: 1, loads: usize::from(loads), stores: usize::from(stores), bytes: line.bytes.len() };
