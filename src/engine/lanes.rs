@@ -16,6 +16,7 @@ mod history;
 mod plan;
 mod recognise;
 mod track;
+mod unfold;
 mod word;
 
 #[cfg(test)]
@@ -33,6 +34,7 @@ use columns::Columns;
 use history::History;
 use plan::{Home, Piece, Plan};
 use track::Tracks;
+use unfold::unfold;
 
 /// Lanes of a group.
 pub const LANES: usize = VECTORS * VECTOR_LANES;
@@ -94,7 +96,8 @@ impl Lanes {
         if touches_turns(program) {
             return Err(refused("its rungs look at when a task is due, which lanes have in common".to_owned()));
         }
-        let plan = Plan::of(program, recognises);
+        let unfolded = recognises.then(|| unfold(program));
+        let plan = Plan::of(unfolded.as_ref().unwrap_or(program), recognises);
         if plan.words.max(plan.row_words) > MOST_WORDS {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
