@@ -67,9 +67,9 @@ pub(super) fn last_store(among: [(&Program, Range<usize>); 2], slot: SlotId) -> 
     among.into_iter().find_map(|(program, sections)| {
         let stores = |section: &usize| {
             let instructions = &program.instructions[program.section_range(*section)];
-            instructions.iter().any(|instruction| {
-                instruction.op.stores(&program.layout).is_some_and(|slots| slots.contains(&slot))
-            })
+            instructions
+                .iter()
+                .any(|instruction| instruction.op.stores(&program.layout).is_some_and(|slots| slots.contains(&slot)))
         };
         let section = sections.rev().find(stores)?;
         program.origins.get(program.sections[section].origin as usize).cloned()

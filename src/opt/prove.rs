@@ -195,8 +195,7 @@ fn proved(before: &Program, after: &Program, passes: &[Pass]) -> Result<Report, 
         let mut program = before.clone();
         let culprit = passes.iter().find(|pass| {
             program = (pass.run)(std::mem::replace(&mut program, before.clone()));
-            let sections =
-                if program.sections.len() == after.sections.len() { &part.after } else { &part.before };
+            let sections = if program.sections.len() == after.sections.len() { &part.after } else { &part.before };
             machine.run(&program, sections.clone(), &difference.image, difference.now) != expected
         });
         let pass = culprit.or(passes.last()).map_or("", |pass| pass.name);
@@ -208,7 +207,8 @@ fn proved(before: &Program, after: &Program, passes: &[Pass]) -> Result<Report, 
 fn compare(before: &Program, after: &Program) -> Result<Report, (Part, Difference)> {
     let parts = part::parts(before, after);
     let machine = Machine::new(&before.layout);
-    let compared = parallel::each(parts.len(), || (), |(), place| part::compare(before, after, &parts[place], &machine));
+    let compared =
+        parallel::each(parts.len(), || (), |(), place| part::compare(before, after, &parts[place], &machine));
     let mut report = Report::default();
     for (part, compared) in parts.into_iter().zip(compared) {
         match compared {

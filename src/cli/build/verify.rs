@@ -41,7 +41,8 @@ fn said(report: &Report) -> String {
 }
 
 fn refused(fault: &Fault, source: &Source) -> Failure {
-    let hint = "this is a fault of Rung: please report it with the program; `--after lower` builds without the optimiser";
+    let hint =
+        "this is a fault of Rung: please report it with the program; `--after lower` builds without the optimiser";
     let code = Code::OptimiserDiffers;
     match fault {
         Fault::Broken { pass, problems } => {

@@ -57,9 +57,10 @@ impl Application {
         std::array::from_fn(|lane| {
             let of = |place: usize| {
                 operands.get(place).map_or((0, 0), |(width, bits)| {
-                    let number = bits.iter().enumerate().fold(0u128, |number, (bit, lanes)| {
-                        number | u128::from(lanes >> lane & 1) << bit
-                    });
+                    let number = bits
+                        .iter()
+                        .enumerate()
+                        .fold(0u128, |number, (bit, lanes)| number | u128::from(lanes >> lane & 1) << bit);
                     (*width, number)
                 })
             };

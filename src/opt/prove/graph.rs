@@ -245,8 +245,12 @@ impl Graph {
     }
 
     pub(super) fn xor(&mut self, a: Literal, b: Literal) -> Literal {
+        let (a, b) = (self.find(a), self.find(b));
+        // Inversions of operands are one of the result.
+        let inverted = a.inverted() != b.inverted();
+        let (a, b) = (a.turned(a.inverted()), b.turned(b.inverted()));
         let (both, neither) = (self.and(a, b), self.and(!a, !b));
-        self.and(!both, !neither)
+        self.and(!both, !neither).turned(inverted)
     }
 
     /// `a` while the condition holds, else `b`.

@@ -16,7 +16,7 @@ use super::word::{
     self, Word, as_constant, constant, extended, rotated_left, rotated_right, shifted_left, shifted_right,
 };
 use crate::elementary::Elementary;
-use crate::logic::{Array, ArrayId, Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId};
+use crate::logic::{Array, ArrayId, Binary, Compare, Instruction, Op, Program, SlotId, Unary, ValueId, evaluate};
 
 /// Elements up to which an array that is read by an index is taken apart.
 const MOST_ELEMENTS: u32 = 64;
@@ -35,8 +35,14 @@ pub(super) enum Turn {
 /// Executes sections whose values come from within them; `None` where that becomes too large.
 pub(super) fn execute(space: &mut Space<'_>, program: &Program, sections: Range<usize>, turn: Turn) -> Option<Stored> {
     let range = program.instruction_range(sections.clone());
-    let mut scan =
-        Scan { space, program, start: range.start, values: Vec::with_capacity(range.len()), took: Vec::new(), stored: Stored::new() };
+    let mut scan = Scan {
+        space,
+        program,
+        start: range.start,
+        values: Vec::with_capacity(range.len()),
+        took: Vec::new(),
+        stored: Stored::new(),
+    };
     for section in sections {
         for index in program.section_range(section) {
             if scan.space.graph.is_full() {
@@ -117,7 +123,8 @@ impl Scan<'_, '_> {
     /// Notes it of the slots that an operation sets; of elements only some of which it sets, the greater of both.
     fn note_taken(&mut self, op: Op, took: Method) {
         let sets_all = matches!(op, Op::Store(..));
-        for (_, (_, of_slot)) in op.stores(&self.program.layout).into_iter().flat_map(|slots| self.stored.range_mut(slots)) {
+        let Some(slots) = op.stores(&self.program.layout) else { return };
+        for (_, (_, of_slot)) in self.stored.range_mut(slots) {
             *of_slot = if sets_all { took } else { took.max(*of_slot) };
         }
     }
@@ -144,7 +151,11 @@ impl Scan<'_, '_> {
             Op::StoreIndexed(array, index, a) => {
                 let (index, value) = (self.of(index), self.space.holding(&self.of(a)));
                 let Array { first, count } = self.array(array);
-                for element in 0..count {
+                let elements = match as_constant(&index) {
+                    None => 0..count,
+                    Some(index) => evaluate::element(count, index).map_or(0..0, |element| element..element + 1),
+                };
+                for element in elements {
                     let slot = SlotId(first.0 + element);
                     let before = self.held(slot);
                     let after = self.space.set_where(&index, element, value, before);
@@ -182,6 +193,15 @@ impl Scan<'_, '_> {
 
     /// An element by an index; the default where there is none.
     fn element(&mut self, Array { first, count }: Array, index: &Rc<[Literal]>, width: usize) -> Word {
+        if let Some(index) = as_constant(index) {
+            return match evaluate::element(count, index) {
+                Some(element) => {
+                    let held = self.held(SlotId(first.0 + element));
+                    self.space.bits(held).to_vec()
+                }
+                None => constant(0, width),
+            };
+        }
         if count > MOST_ELEMENTS {
             let contents = (0..count).map(|element| self.held(SlotId(first.0 + element))).collect();
             let contents = self.space.contents(contents);
@@ -222,7 +242,9 @@ impl Scan<'_, '_> {
             Binary::Xor => graph.each(a, b, super::graph::Graph::xor),
             Binary::Add => graph.add(a, b),
             Binary::Subtract => graph.subtract(a, b),
-            Binary::Multiply => self.product(&word::signed(a, ty.is_signed()), &word::signed(b, ty.is_signed()), a.len()),
+            Binary::Multiply => {
+                self.product(&word::factor(a, ty.is_signed()), &word::factor(b, ty.is_signed()), a.len())
+            }
             Binary::Divide => self.quotient(ty, a, b),
             Binary::Remainder => self.remainder(ty, a, b),
             Binary::Minimum | Binary::Maximum => {
@@ -314,7 +336,7 @@ impl Scan<'_, '_> {
         }
         let quotient = self.quotient(ty, a, b);
         let signed = ty.is_signed();
-        let multiple = self.product(&word::signed(&quotient, signed), &word::signed(b, signed), a.len());
+        let multiple = self.product(&word::factor(&quotient, signed), &word::factor(b, signed), a.len());
         let left = self.space.graph.subtract(a, &multiple);
         let exists = self.space.graph.any(b);
         left.into_iter().map(|bit| self.space.graph.and(bit, exists)).collect()
@@ -328,15 +350,18 @@ impl Scan<'_, '_> {
             return None;
         }
         let [a, b] = self.space.as_product(product)? else { return None };
-        let (factor, x) = match (as_constant(&word::unsigned(a)), as_constant(&word::unsigned(b))) {
+        // Both are signed words, and neither may be negative.
+        let ((a_sign, a), (b_sign, b)) = (a.split_last()?, b.split_last()?);
+        if (*a_sign, *b_sign) != (Literal::FALSE, Literal::FALSE) {
+            return None;
+        }
+        let (factor, x) = match (as_constant(a), as_constant(b)) {
             (Some(factor), None) => (factor, b),
             (None, Some(factor)) => (factor, a),
             _ => return None,
         };
-        // The highest bit of a signed word that is not negative.
-        let (sign, x) = x.split_last()?;
         let (width, x) = (u32::try_from(x.len()).ok()?, x.to_vec());
-        if *sign != Literal::FALSE || width > 63 || factor >> (64 - width) != 0 || factor == 0 {
+        if width > 63 || factor >> (64 - width) != 0 || factor == 0 {
             return None;
         }
         let power = 1u128 << amount;

@@ -12,7 +12,7 @@ use rand_pcg::Pcg64;
 use super::function::{Application, Function};
 use super::graph::{Column, Graph, Literal, Node, Source, value_in};
 use super::judge::Judge;
-use super::word::{Word, constant, signed};
+use super::word::{Word, as_constant, constant, signed};
 use crate::elementary::{Elementary, Value};
 use crate::logic::{Layout, SlotId, random};
 
@@ -33,9 +33,18 @@ enum Made {
     Initially(SlotId),
     Bits(Rc<[Literal]>),
     /// The value where an index, a LINT, names this element, else what was there before.
-    Where { index: Rc<[Literal]>, element: u32, value: Held, before: Held },
+    Where {
+        index: Rc<[Literal]>,
+        element: u32,
+        value: Held,
+        before: Held,
+    },
     /// The one while a condition holds, else the other.
-    While { condition: Literal, value: Held, before: Held },
+    While {
+        condition: Literal,
+        value: Held,
+        before: Held,
+    },
 }
 
 /// See the module.
@@ -103,6 +112,9 @@ impl<'a> Space<'a> {
     pub(super) fn set_where(&mut self, index: &Rc<[Literal]>, element: u32, value: Held, before: Held) -> Held {
         if value == before {
             return before;
+        }
+        if as_constant(index) == Some(u64::from(element)) {
+            return value;
         }
         self.number(Made::Where { index: Rc::clone(index), element, value, before })
     }
@@ -203,7 +215,8 @@ impl<'a> Space<'a> {
 
     /// The low bits of what a function makes of operands.
     pub(super) fn apply(&mut self, function: Function, operands: Vec<Word>, width: usize) -> Word {
-        let operands = operands.into_iter().map(|word| word.iter().map(|bit| self.graph.find(*bit)).collect()).collect();
+        let operands =
+            operands.into_iter().map(|word| word.iter().map(|bit| self.graph.find(*bit)).collect()).collect();
         let application = Application::new(function, operands);
         if let Some(bits) = application.constant() {
             return constant(bits, width);

@@ -36,6 +36,13 @@ pub(super) fn signed(word: &[Literal], is_signed: bool) -> Word {
     word
 }
 
+/// A factor of a product of which no more bits are wanted than it has, as the shortest signed word: whether a factor has a
+/// sign does not count then, and it is taken to have one where that makes it shorter.
+pub(super) fn factor(word: &[Literal], is_signed: bool) -> Word {
+    let with_sign = signed(word, true);
+    if is_signed || with_sign.len() < word.len() { with_sign } else { signed(word, false) }
+}
+
 /// A number as the shortest word without a sign.
 pub(super) fn unsigned(word: &[Literal]) -> Word {
     let length = word.iter().rposition(|literal| *literal != Literal::FALSE).map_or(0, |last| last + 1);
@@ -43,7 +50,12 @@ pub(super) fn unsigned(word: &[Literal]) -> Word {
 }
 
 impl Graph {
-    pub(super) fn each(&mut self, a: &[Literal], b: &[Literal], op: fn(&mut Self, Literal, Literal) -> Literal) -> Word {
+    pub(super) fn each(
+        &mut self,
+        a: &[Literal],
+        b: &[Literal],
+        op: fn(&mut Self, Literal, Literal) -> Literal,
+    ) -> Word {
         a.iter().zip(b).map(|(a, b)| op(self, *a, *b)).collect()
     }
 
