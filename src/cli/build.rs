@@ -18,7 +18,7 @@ use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
-use crate::opt::PASSES;
+use crate::opt::{PASSES, Pass};
 use crate::source::{Source, Span};
 
 /// The stage before any pass, for `--after`.
@@ -88,7 +88,12 @@ enum Emit {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let passes = passes_until(arguments.after.as_deref())?;
+    build(arguments, PASSES)
+}
+
+/// The command with these passes.
+fn build(arguments: &Arguments, passes: &[Pass]) -> Result<(), Failure> {
+    let passes = passes_until(arguments.after.as_deref(), passes)?;
     let interface = Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
         .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
     let target = arguments.target()?;
@@ -96,7 +101,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let earlier = arguments.previous_map.as_deref().map(read_map).transpose()?;
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
-    let passes = &PASSES[..passes];
     let program = if arguments.verify {
         let (program, said) = verify::optimised(program, passes, &loaded.source)?;
         super::report(&said);
@@ -188,14 +192,14 @@ fn unplaced(problems: &[Diagnostic]) -> Failure {
     problems.first().map_or(Failure::Said, text)
 }
 
-/// How many passes run.
-fn passes_until(after: Option<&str>) -> Result<usize, Failure> {
-    let Some(after) = after else { return Ok(PASSES.len()) };
+/// The passes that run.
+fn passes_until<'a>(after: Option<&str>, passes: &'a [Pass]) -> Result<&'a [Pass], Failure> {
+    let Some(after) = after else { return Ok(passes) };
     if after == LOWER {
-        return Ok(0);
+        return Ok(&[]);
     }
-    PASSES.iter().position(|pass| pass.name == after).map(|index| index + 1).ok_or_else(|| {
-        let names: Vec<&str> = std::iter::once(LOWER).chain(PASSES.iter().map(|pass| pass.name)).collect();
+    passes.iter().position(|pass| pass.name == after).map(|index| &passes[..=index]).ok_or_else(|| {
+        let names: Vec<&str> = std::iter::once(LOWER).chain(passes.iter().map(|pass| pass.name)).collect();
         Failure::new(Code::UndeclaredName, format!("there is no pass `{after}`, but {}", names.join(", ")))
     })
 }
