@@ -45,11 +45,12 @@ const MOST_TRIED: usize = 3;
 const MOST_IN_VAIN: u32 = 100;
 
 /// For a node on the way; for what was asked, before those and after.
-const LITTLE: Effort = Effort { nodes: 300, conflicts: 50 };
-const SOME: Effort = Effort { nodes: 20_000, conflicts: 200 };
-const MUCH: Effort = Effort { nodes: 100_000, conflicts: 5_000 };
-/// Conflicts for all questions about one part of a program.
-const CONFLICTS: u64 = 100_000;
+const LITTLE: Effort = Effort { nodes: 300, conflicts: 50, work: WORK };
+const SOME: Effort = Effort { nodes: 20_000, conflicts: 200, work: WORK };
+const MUCH: Effort = Effort { nodes: 100_000, conflicts: 5_000, work: WORK };
+
+/// Work of the solver, and on new samples, for all questions about one part of a program.
+const WORK: u64 = 30_000_000;
 
 /// What is remembered from one question to the next.
 #[derive(Debug)]
@@ -65,7 +66,8 @@ pub(super) struct Judge {
     values: HashMap<u64, Vec<(usize, u32)>>,
     /// By node: its place in a table of all values, which only whoever fills that may use.
     places: Vec<u32>,
-    conflicts: u64,
+    /// Work that may still be done.
+    work: u64,
     /// What the proofs took lately.
     took: Method,
 }
@@ -79,7 +81,7 @@ impl Default for Judge {
             noted: HashSet::new(),
             values: HashMap::new(),
             places: Vec::new(),
-            conflicts: CONFLICTS,
+            work: WORK,
             took: Method::Structure,
         }
     }
@@ -174,15 +176,18 @@ impl Space<'_> {
 
     /// Asks the solver; merges them, or adds the samples that it found.
     fn ask(&mut self, a: Literal, b: Literal, effort: Effort) {
-        let effort = Effort { conflicts: effort.conflicts.min(self.judge.conflicts), ..effort };
-        if effort.conflicts == 0 {
+        let effort = Effort { work: effort.work.min(self.judge.work), ..effort };
+        if effort.work == 0 {
             return;
         }
         let (answer, taken) = sat::ask(&self.graph, a, b, effort);
-        self.judge.conflicts -= taken;
+        self.judge.work = self.judge.work.saturating_sub(taken);
         match answer {
             Answer::Equal => self.proved(a, b, Method::Sat),
-            Answer::Differ(values) => self.refine(&values),
+            Answer::Differ(values) => {
+                self.judge.work = self.judge.work.saturating_sub(self.cost_of_samples());
+                self.refine(&values);
+            }
             Answer::Unknown => {}
         }
     }

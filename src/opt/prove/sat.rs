@@ -17,6 +17,8 @@ pub(super) struct Effort {
     pub(super) nodes: usize,
     /// Conflicts after which it gives up.
     pub(super) conflicts: u64,
+    /// Work after which it gives up: conflicts times nodes. A million takes some ten milliseconds.
+    pub(super) work: u64,
 }
 
 /// What came of it.
@@ -52,11 +54,9 @@ impl Callbacks for Budget {
     }
 }
 
-/// Asks, and gives the conflicts that it took.
+/// Asks, and gives the work that it took.
 pub(super) fn ask(graph: &Graph, a: Literal, b: Literal, effort: Effort) -> (Answer, u64) {
-    let conflicts = effort.conflicts;
-    let budget = Budget { conflicts, decisions: Cell::new(conflicts.saturating_mul(DECISIONS)) };
-    let mut solver = Solver::new(SolverOpts::default(), budget);
+    let mut solver = Solver::new(SolverOpts::default(), Budget { conflicts: 0, decisions: Cell::new(0) });
     let mut cone = Cone { graph, variables: HashMap::new(), waiting: BTreeSet::new() };
     let [a, b] = [a, b].map(|literal| cone.literal(&mut solver, graph.find(literal)));
     let mut told = 0;
@@ -75,8 +75,12 @@ pub(super) fn ask(graph: &Graph, a: Literal, b: Literal, effort: Effort) -> (Ans
     let is_whole = told < effort.nodes;
     solver.add_clause_reuse(&mut vec![a, b]);
     solver.add_clause_reuse(&mut vec![!a, !b]);
+    let work = told as u64 + 1;
+    let conflicts = effort.conflicts.min(effort.work / work);
+    *solver.cb_mut() = Budget { conflicts, decisions: Cell::new(conflicts.saturating_mul(DECISIONS)) };
     let found = solver.solve_limited(&[]);
-    let taken = conflicts - solver.cb().conflicts;
+    // To tell it a node costs no less than a conflict does.
+    let taken = work * (1 + conflicts - solver.cb().conflicts);
     if found == lbool::FALSE {
         return (Answer::Equal, taken);
     }

@@ -297,6 +297,13 @@ impl<'a> Space<'a> {
         (image, now.cast_signed())
     }
 
+    /// What it costs to add samples, in the solver's units of work.
+    pub(super) fn cost_of_samples(&self) -> u64 {
+        /// A function is computed 64 times, of operands put together bit by bit.
+        const FUNCTION: usize = 1000;
+        (self.graph.len() + FUNCTION * self.applications.len()) as u64
+    }
+
     /// Adds samples on which variables have these values, and some near them.
     pub(super) fn refine(&mut self, values: &HashMap<u32, bool>) {
         let mut rng = Pcg64::seed_from_u64(self.added as u64);
