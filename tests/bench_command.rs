@@ -108,7 +108,7 @@ fn a_compiler_that_takes_too_long_is_stopped_and_the_rest_is_measured() {
 #[test]
 fn names_that_c_has_not_are_refused_unless_the_compilers_are_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = write(folder.path(), "w.rung", "program w\ninput while\noutput q\nrung a\n  while (q)\n");
+    let path = write(folder.path(), "w.rung", "program w\ninput register\noutput q\nrung a\n  register (q)\n");
     let path = path.display().to_string();
     let refused = run(&[&path, "--scans", "1"]);
     let said = String::from_utf8_lossy(&refused.stderr);
