@@ -189,7 +189,8 @@ fn proved(before: &Program, after: &Program, passes: &[Pass]) -> Result<Report, 
     if before == after {
         return Ok(Report::default());
     }
-    compare(before, after).map_err(|(part, difference)| {
+    compare(before, after).map_err(|different| {
+        let (part, difference) = *different;
         let machine = Machine::new(&before.layout);
         let expected = machine.run(before, part.before.clone(), &difference.image, difference.now);
         let mut program = before.clone();
@@ -204,7 +205,7 @@ fn proved(before: &Program, after: &Program, passes: &[Pass]) -> Result<Report, 
 }
 
 /// Compares two verified programs over one layout, with the same origins.
-fn compare(before: &Program, after: &Program) -> Result<Report, (Part, Difference)> {
+fn compare(before: &Program, after: &Program) -> Result<Report, Box<(Part, Difference)>> {
     let parts = part::parts(before, after);
     let machine = Machine::new(&before.layout);
     let compared =
@@ -213,7 +214,7 @@ fn compare(before: &Program, after: &Program) -> Result<Report, (Part, Differenc
     for (part, compared) in parts.into_iter().zip(compared) {
         match compared {
             Ok(of_part) => report.add(of_part),
-            Err(difference) => return Err((part, *difference)),
+            Err(difference) => return Err(Box::new((part, *difference))),
         }
     }
     Ok(report)

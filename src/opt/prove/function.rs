@@ -5,7 +5,7 @@
 
 use super::graph::Literal;
 use super::word::Word;
-use crate::elementary::{Elementary, canonical};
+use crate::elementary::Elementary;
 use crate::logic::{Binary, Compare, Helper, Unary, evaluate};
 
 /// A function.
@@ -116,7 +116,9 @@ impl Function {
 
 /// The low 64 bits.
 fn low(number: i128) -> u64 {
-    canonical(Elementary::Ulint, (number.cast_unsigned() & u128::from(u64::MAX)) as u64)
+    #[expect(clippy::cast_possible_truncation, reason = "the low bits are wanted")]
+    let low = number.cast_unsigned() as u64;
+    low
 }
 
 /// The number of a signed word.

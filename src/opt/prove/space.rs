@@ -225,17 +225,14 @@ impl<'a> Space<'a> {
         let have = self.results[number as usize].len();
         if have < width {
             let application = &self.applications[number as usize];
-            let samples: Vec<[u64; 64]> = self
-                .graph
-                .columns()
-                .iter()
-                .map(|column| transposed(&application.samples(|bit| value_in(column, bit))))
-                .collect();
-            for bit in have..width {
+            let columns = self.graph.columns().iter();
+            let samples: Vec<[u64; 64]> =
+                columns.map(|column| transposed(&application.samples(|bit| value_in(column, bit)))).collect();
+            let more = (have..width).map(|bit| {
                 let source = Source::Applied(number, u8::try_from(bit).unwrap_or(u8::MAX));
-                let variable = self.graph.variable(source, |column| samples[column][bit]);
-                self.results[number as usize].push(variable);
-            }
+                self.graph.variable(source, |column| samples[column][bit])
+            });
+            self.results[number as usize].extend(more);
         }
         self.results[number as usize][..width].to_vec()
     }

@@ -78,8 +78,8 @@ fn every_fault_that_random_images_show_is_told_and_every_one_told_is_one() {
             // Sections are the same ones, so that chunks of both correspond.
             let shown = check::difference(&program, &mutant, 40);
             match compare(&program, &mutant) {
-                Err((_, difference)) => {
-                    confirm(&program, &mutant, &difference);
+                Err(different) => {
+                    confirm(&program, &mutant, &different.1);
                     told += 1;
                 }
                 Ok(report) => {
