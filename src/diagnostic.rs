@@ -140,6 +140,7 @@ codes! {
     NeedsFpu = 905 Error "reals on a target without floating point",
     BadSymbol = 906 Error "a prefix that is no identifier of C",
     TooLargeForTarget = 907 Error "the program is too large for the target",
+    OptimiserDiffers = 908 Error "the optimiser changes what the program computes",
     NotACName = 911 Error "a name that C cannot have",
     // Lanes and assertions.
     BadAssertion = 920 Error "an assertion that cannot be used",

@@ -13,6 +13,7 @@ mod cut;
 mod fold;
 mod forward;
 mod narrow;
+pub mod prove;
 mod reduce;
 mod rewrite;
 mod share;

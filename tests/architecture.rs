@@ -54,6 +54,11 @@ fn only_the_compiled_engines_name_cranelift() {
 }
 
 #[test]
+fn only_the_prover_of_passes_names_the_solver() {
+    assert_eq!(naming("src", &["batsat"], &["src/opt/prove/sat.rs"]), NONE);
+}
+
+#[test]
 fn engines_know_no_block_and_no_ladder() {
     let engines: Vec<_> = naming("src", &["crate::ladder", "crate::check", "crate::lower"], &[])
         .into_iter()

@@ -2,6 +2,7 @@
 //! the map of its image.
 
 mod notes;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,7 @@ use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
-use crate::opt::PASSES;
+use crate::opt::{PASSES, Pass};
 use crate::source::{Source, Span};
 
 /// The stage before any pass, for `--after`.
@@ -55,6 +56,9 @@ pub(super) struct Arguments {
     /// Stop after this pass; `lower` is before the first one, and an unknown one lists them
     #[arg(long, value_name = "PASS")]
     after: Option<String>,
+    /// Prove that the optimised program computes what the program says, and tell how much of it was proved
+    #[arg(long)]
+    verify: bool,
     /// Write a header for firmware: the structure of the image and the functions
     #[arg(long, value_name = "FILE.h")]
     header: Option<PathBuf>,
@@ -84,7 +88,12 @@ enum Emit {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let passes = passes_until(arguments.after.as_deref())?;
+    build(arguments, PASSES)
+}
+
+/// The command with these passes.
+fn build(arguments: &Arguments, passes: &[Pass]) -> Result<(), Failure> {
+    let passes = passes_until(arguments.after.as_deref(), passes)?;
     let interface = Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
         .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
     let target = arguments.target()?;
@@ -92,7 +101,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let earlier = arguments.previous_map.as_deref().map(read_map).transpose()?;
     let program = lower(&checked, &loaded.source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
-    let program = PASSES[..passes].iter().fold(program, |program, pass| (pass.run)(program));
+    let program = if arguments.verify {
+        let (program, said) = verify::optimised(program, passes, &loaded.source)?;
+        super::report(&said);
+        program
+    } else {
+        passes.iter().fold(program, |program, pass| (pass.run)(program))
+    };
     let place = |line, name: &str| place_of(&loaded.source, line, name);
     let emit = arguments.emit();
     if emit == Some(Emit::C) || arguments.header.is_some() {
@@ -104,7 +119,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // All outputs are made before the first is written.
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
     let header = arguments.header.as_deref().map(|path| Ok((path, built.header()?))).transpose()?;
-    let report = arguments.report.as_deref().map(|path| built.report(path)).transpose()?;
+    let costs = arguments.report.as_deref().map(|path| built.report(path)).transpose()?;
     if arguments.report.as_deref() == Some(Path::new("-")) && output.is_some() && arguments.output == Path::new("-") {
         let hint = "give the output a file with `-o`, or the report one with `--report=FILE`";
         return Err(Failure::hinted(Code::BadOptions, "output and report cannot both be printed", hint));
@@ -118,8 +133,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(output) = output {
         write_whole(&arguments.output, &output)?;
     }
-    match (&arguments.report, report) {
-        (Some(path), Some(report)) => write_whole(path, report.as_bytes()),
+    match (&arguments.report, costs) {
+        (Some(path), Some(costs)) => write_whole(path, costs.as_bytes()),
         _ => Ok(()),
     }
 }
@@ -177,14 +192,14 @@ fn unplaced(problems: &[Diagnostic]) -> Failure {
     problems.first().map_or(Failure::Said, text)
 }
 
-/// How many passes run.
-fn passes_until(after: Option<&str>) -> Result<usize, Failure> {
-    let Some(after) = after else { return Ok(PASSES.len()) };
+/// The passes that run.
+fn passes_until<'a>(after: Option<&str>, passes: &'a [Pass]) -> Result<&'a [Pass], Failure> {
+    let Some(after) = after else { return Ok(passes) };
     if after == LOWER {
-        return Ok(0);
+        return Ok(&[]);
     }
-    PASSES.iter().position(|pass| pass.name == after).map(|index| index + 1).ok_or_else(|| {
-        let names: Vec<&str> = std::iter::once(LOWER).chain(PASSES.iter().map(|pass| pass.name)).collect();
+    passes.iter().position(|pass| pass.name == after).map(|index| &passes[..=index]).ok_or_else(|| {
+        let names: Vec<&str> = std::iter::once(LOWER).chain(passes.iter().map(|pass| pass.name)).collect();
         Failure::new(Code::UndeclaredName, format!("there is no pass `{after}`, but {}", names.join(", ")))
     })
 }

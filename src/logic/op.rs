@@ -4,8 +4,9 @@
 //! every engine has it. A function block must never appear here.
 
 use std::fmt;
+use std::ops::Range;
 
-use super::{ArrayId, SlotId};
+use super::{ArrayId, Layout, SlotId};
 use crate::elementary::Elementary;
 
 /// A value: the place of the instruction that defines it in its program.
@@ -72,6 +73,25 @@ impl Op {
     /// Whether it has a result, which stores and copies have not.
     pub fn has_value(self) -> bool {
         !matches!(self, Self::Store(..) | Self::StoreIndexed(..) | Self::CopyArray(..))
+    }
+
+    /// The slots that it may set, side by side; `None` where it sets none.
+    pub fn stores(self, layout: &Layout) -> Option<Range<SlotId>> {
+        match self {
+            Self::Store(slot, _) => Some(slot..SlotId(slot.0.saturating_add(1))),
+            Self::StoreIndexed(array, ..) | Self::CopyArray(array, ..) => Some(layout.array(array).slots()),
+            Self::Constant(_)
+            | Self::Now
+            | Self::Load(_)
+            | Self::Unary(..)
+            | Self::Binary(..)
+            | Self::Compare(..)
+            | Self::Select(..)
+            | Self::Convert(_)
+            | Self::Reinterpret(_)
+            | Self::Call(..)
+            | Self::LoadIndexed(..) => None,
+        }
     }
 
     /// The operands, in order.

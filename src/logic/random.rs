@@ -119,7 +119,7 @@ fn pick<T: Copy>(rng: &mut Pcg64, from: &[T]) -> T {
 }
 
 /// A value that is likely to lie at an edge: 0, 1, -1, the ends of the range, a power of two, a NaN, anything.
-fn value(rng: &mut Pcg64, ty: Elementary) -> Value {
+pub(crate) fn value(rng: &mut Pcg64, ty: Elementary) -> Value {
     let edges = [0, 1, u64::MAX, 1 << (ty.bits() - 1), (1 << (ty.bits() - 1)) - 1, 2, 7, 31, 32, 63, 64, 100];
     let reals =
         [0.0, -0.0, 1.0, -1.5, 0.5, 2.5, 1e10, -1e30, 1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e-310];

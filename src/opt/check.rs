@@ -4,9 +4,10 @@
 //! large program is found.
 
 use std::fmt;
+use std::ops::Range;
 
 use crate::logic::execute::Executor;
-use crate::logic::{Op, Origin, Program, Slot, random};
+use crate::logic::{Origin, Program, Slot, SlotId, random};
 
 /// Where two programs differ.
 #[derive(Clone, PartialEq, Debug)]
@@ -53,30 +54,24 @@ pub fn difference(before: &Program, after: &Program, images: u64) -> Option<Diff
 
 /// The difference at a byte of the image.
 fn at(before: &Program, after: &Program, byte: usize, seed: u64) -> Difference {
-    let covers = |slot: &&Slot| (slot.offset as usize..(slot.offset + slot.ty.size()) as usize).contains(&byte);
-    let slot = before.layout.slots().iter().find(covers).cloned();
-    let stores = |program: &Program, section: usize| {
-        program.instructions[program.section_range(section)].iter().any(|instruction| match instruction.op {
-            Op::Store(stored, _) => covers(&program.layout.slot(stored)),
-            Op::StoreIndexed(array, ..) | Op::CopyArray(array, ..) => {
-                program.layout.slots()[program.layout.array(array).indices()].iter().any(|slot| covers(&slot))
-            }
-            Op::Constant(_)
-            | Op::Now
-            | Op::Load(_)
-            | Op::Unary(..)
-            | Op::Binary(..)
-            | Op::Compare(..)
-            | Op::Select(..)
-            | Op::Convert(_)
-            | Op::Reinterpret(_)
-            | Op::Call(..)
-            | Op::LoadIndexed(..) => false,
-        })
-    };
-    let origin = [before, after].into_iter().find_map(|program| {
-        let section = (0..program.sections.len()).rev().find(|section| stores(program, *section))?;
-        program.origins.get(program.sections[section].origin as usize).cloned()
+    let covers = |slot: &Slot| (slot.offset as usize..(slot.offset + slot.ty.size()) as usize).contains(&byte);
+    let found = (0..).zip(before.layout.slots()).find(|(_, slot)| covers(slot));
+    let origin = found.and_then(|(id, _)| {
+        last_store([before, after].map(|program| (program, 0..program.sections.len())), SlotId(id))
     });
-    Difference { origin, slot, seed }
+    Difference { origin, slot: found.map(|(_, slot)| slot.clone()), seed }
+}
+
+/// Where the rung comes from that is the last to store a slot, among some sections of a program, or else of another.
+pub(super) fn last_store(among: [(&Program, Range<usize>); 2], slot: SlotId) -> Option<Origin> {
+    among.into_iter().find_map(|(program, sections)| {
+        let stores = |section: &usize| {
+            let instructions = &program.instructions[program.section_range(*section)];
+            instructions
+                .iter()
+                .any(|instruction| instruction.op.stores(&program.layout).is_some_and(|slots| slots.contains(&slot)))
+        };
+        let section = sections.rev().find(stores)?;
+        program.origins.get(program.sections[section].origin as usize).cloned()
+    })
 }

@@ -3,6 +3,7 @@
 use rung::engine::interp::Textbook;
 use rung::logic::random;
 use rung::opt::PASSES;
+use rung::opt::prove::optimise_proved;
 use rung::source::Source;
 use rung::{logic, lower};
 use rung_runtime::Scan;
@@ -38,6 +39,21 @@ fn every_pass_keeps_what_random_ladder_programs_compute() {
             before = after;
         }
     }
+}
+
+#[test]
+fn the_passes_over_random_ladder_programs_are_proved_to_change_nothing() {
+    let (mut proved, mut unproved) = (0, 0);
+    for seed in 0..programs() / 20 {
+        let checked = checked(&random_program(seed)).unwrap_or_else(|problems| panic!("seed {seed}: {problems}"));
+        let program = lower::lower(&checked, &Source::new("drawn", ""), None).expect("a small image");
+        let (_, report) = optimise_proved(program, PASSES).unwrap_or_else(|fault| panic!("seed {seed}: {fault:?}"));
+        proved += report.proved();
+        unproved += report.unproved.len();
+    }
+    // They compute with REALs and long arithmetic far more than a ladder does: of the first hundred, one value in nine
+    // stays unproved.
+    assert!(unproved * 4 <= proved, "{unproved} are unproved, {proved} are proved");
 }
 
 #[test]
