@@ -8,8 +8,7 @@ use memmap2::{Mmap, MmapMut};
 use super::memory::synchronise;
 use crate::engine::lanes::{Code, VECTORS, Word};
 
-/// The type of a function: the words, and the row of codes; or the sums, and all rows. Then how many vectors both are
-/// moved on by.
+/// The type of a function: the words, the row of stamps, and how many vectors of a word to go through.
 type Function = unsafe extern "C" fn(*mut Word, *mut Word, i64);
 
 /// Installed segments.
@@ -51,28 +50,20 @@ impl Segments {
         Ok(Self { functions, _pages: Some(pages) })
     }
 
-    /// Runs a segment, of so many words one after the other, of which so many vectors.
+    /// Runs a segment, on so many vectors of each word.
     ///
     /// # Panics
-    /// When there are fewer words, or fewer of a row, than the segment was made for and is moved on by; or none, or
-    /// more
-    /// vectors than a word has.
+    /// When there are fewer words, or fewer of a row, than the segment was made for; or no vectors, or more than a word
+    /// has.
     #[inline]
-    pub(in crate::engine) fn run(
-        &self,
-        segment: usize,
-        words: &mut [Word],
-        row: &mut [Word],
-        [count, vectors]: [usize; 2],
-    ) {
+    pub(in crate::engine) fn run(&self, segment: usize, words: &mut [Word], row: &mut [Word], vectors: usize) {
         let (function, [reach, row_reach]) = self.functions[segment];
-        let fits = count > 0 && words.len() >= reach + count - 1 && row.len() + 1 >= row_reach + count;
+        let fits = words.len() >= reach && row.len() >= row_reach;
         assert!(fits && (1..=VECTORS).contains(&vectors), "too few words for the program");
-        let turns = i64::try_from((count - 1) * VECTORS + vectors).unwrap_or(i64::MAX);
-        // SAFETY: in each turn the function reads and writes vectors, aligned as such, of the words below its two
-        // reaches, and
-        // moves both pointers on by one vector, `count` words at the most; both slices are as long. They are borrowed
-        // mutably, so that nobody else sees them, and are apart.
+        let turns = i64::try_from(vectors).unwrap_or(i64::MAX);
+        // SAFETY: in each of its turns, of which there are no more than a word has vectors, the function reads and writes
+        // one vector, aligned as such, of each of the words below its two reaches; both slices are as long. They are
+        // borrowed mutably, so that nobody else sees them, and are apart.
         unsafe { function(words.as_mut_ptr(), row.as_mut_ptr(), turns) }
     }
 }

@@ -1,4 +1,4 @@
-//! A segment to one Cranelift function on 128-bit vectors, one bit a lane; and the sums of an epoch to one for a class.
+//! A segment to one Cranelift function on 128-bit vectors, one bit a lane.
 //!
 //! A function is a loop over the vectors of a word: all of a segment for the first, then for the next.
 //!
@@ -10,8 +10,6 @@
 //! extern "C" fn(words: *mut Word, row: *mut Word, vectors: i64)
 //! ```
 
-mod sums;
-
 use std::collections::HashMap;
 
 use cranelift_codegen::Context;
@@ -22,8 +20,7 @@ use cranelift_codegen::ir::{
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
-use super::plan::{Bit, BitOp, FALSE_WORD, Piece, Plan, TRUE_WORD};
-use super::track::ROWS;
+use super::plan::{Bit, BitOp, Cell, FALSE_WORD, Piece, Plan, TRUE_WORD};
 use super::word::Word;
 use crate::engine::clif::{self, CompileError};
 use crate::parallel;
@@ -42,8 +39,7 @@ pub(in crate::engine) struct Code {
     pub(in crate::engine) reach: [usize; 2],
 }
 
-/// The code of a plan's segments, in order, and behind them that of the sums of each class, made on all cores; it does
-/// not depend on how many there are.
+/// The code of a plan's segments, in order, made on all cores; it does not depend on how many there are.
 ///
 /// # Errors
 /// That of the first that has one: when Cranelift refuses it.
@@ -56,19 +52,11 @@ pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa) -> Result<Vec<Code>, Com
         })
         .collect();
     let start = || (Context::new(), FunctionBuilderContext::new());
-    let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| match segments.get(index) {
-        Some(ops) => {
-            let reach = [plan.words, plan.row_words];
-            function(index, isa, memory, reach, |builder, pointers| segment(ops, builder, pointers))
-        }
-        None => {
-            let class = &plan.classes[index - segments.len()];
-            let (length, last_row) = (class.tracks.len(), plan.row_words * (ROWS - 1));
-            let reach = [(class.sums() - 1) * length + 1, last_row + class.row + (class.bits - 1) * length + 1];
-            function(index, isa, memory, reach, |builder, pointers| sums::sums(plan, class, builder, pointers))
-        }
+    let reach = [plan.words, plan.stamps.len()];
+    let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| {
+        function(index, isa, memory, reach, |builder, pointers| segment(segments[index], builder, pointers))
     };
-    parallel::each(segments.len() + plan.classes.len(), start, work).into_iter().collect()
+    parallel::each(segments.len(), start, work).into_iter().collect()
 }
 
 /// Makes a function of two pointers and of how many vectors they are to be moved on by: a loop over its body.
@@ -131,8 +119,8 @@ fn segment<'f>(ops: &[BitOp], builder: FunctionBuilder<'f>, [words, row]: [Value
 /// The operands of an operation.
 fn operands(op: &BitOp) -> impl Iterator<Item = u32> + use<> {
     let operands = match *op {
-        BitOp::Load(_) | BitOp::Store(_, Bit::Constant(_)) | BitOp::Note(_, Bit::Constant(_)) => [None, None],
-        BitOp::Not(a) | BitOp::Store(_, Bit::Made(a)) | BitOp::Note(_, Bit::Made(a)) => [Some(a), None],
+        BitOp::Load(_) | BitOp::Store(_, Bit::Constant(_)) => [None, None],
+        BitOp::Not(a) | BitOp::Store(_, Bit::Made(a)) => [Some(a), None],
         BitOp::And(a, b) | BitOp::Or(a, b) | BitOp::Xor(a, b) => [Some(a), Some(b)],
     };
     operands.into_iter().flatten()
@@ -146,8 +134,8 @@ struct Lowering<'a, 'f> {
     /// By operation: uses that are still to come.
     uses: Vec<u32>,
     held: Vec<Option<Value>>,
-    /// Loads of a word since it was last stored.
-    pending: HashMap<u32, Vec<u32>>,
+    /// Loads of a place in memory since it was last stored.
+    pending: HashMap<Cell, Vec<u32>>,
 }
 
 impl Lowering<'_, '_> {
@@ -155,20 +143,16 @@ impl Lowering<'_, '_> {
         let op = self.ops[index];
         let id = u32::try_from(index).unwrap_or(u32::MAX);
         let value = match op {
-            BitOp::Store(word, bit) => {
+            BitOp::Store(cell, bit) => {
                 let value = self.bit(bit);
-                self.make_pending(word);
-                self.builder.ins().store(MemFlagsData::trusted(), value, self.words, way(word));
-                return;
-            }
-            BitOp::Note(word, bit) => {
-                let value = self.bit(bit);
-                self.builder.ins().store(MemFlagsData::trusted(), value, self.row, way(word));
+                self.make_pending(cell);
+                let (pointer, way) = self.address(cell);
+                self.builder.ins().store(MemFlagsData::trusted(), value, pointer, way);
                 return;
             }
             _ if self.uses[index] == 0 => return,
             // Made where they are used.
-            BitOp::Load(word) => return self.pending.entry(word).or_default().push(id),
+            BitOp::Load(cell) => return self.pending.entry(cell).or_default().push(id),
             BitOp::Not(_) if self.is_late_not(id) => return,
             BitOp::Not(a) => self.inverted(a),
             BitOp::And(a, b) => self.and(a, b),
@@ -194,13 +178,21 @@ impl Lowering<'_, '_> {
         settled
     }
 
-    fn load(&mut self, word: u32) -> Value {
-        self.builder.ins().load(VECTOR, MemFlagsData::trusted(), self.words, way(word))
+    fn address(&self, cell: Cell) -> (Value, i32) {
+        match cell {
+            Cell::Word(word) => (self.words, way(word)),
+            Cell::Row(stamp) => (self.row, way(stamp)),
+        }
+    }
+
+    fn load(&mut self, cell: Cell) -> Value {
+        let (pointer, way) = self.address(cell);
+        self.builder.ins().load(VECTOR, MemFlagsData::trusted(), pointer, way)
     }
 
     fn bit(&mut self, bit: Bit) -> Value {
         match bit {
-            Bit::Constant(value) => self.load(if value { TRUE_WORD } else { FALSE_WORD }),
+            Bit::Constant(value) => self.load(Cell::Word(if value { TRUE_WORD } else { FALSE_WORD })),
             Bit::Made(id) => self.value(id),
         }
     }
@@ -211,9 +203,9 @@ impl Lowering<'_, '_> {
         self.uses[index] = self.uses[index].saturating_sub(1);
         match (self.held[index], self.ops[index]) {
             (Some(value), _) => value,
-            (None, BitOp::Load(word)) => self.load(word),
+            (None, BitOp::Load(cell)) => self.load(cell),
             (None, BitOp::Not(a)) => self.inverted(a),
-            (None, BitOp::And(..) | BitOp::Or(..) | BitOp::Xor(..) | BitOp::Store(..) | BitOp::Note(..)) => {
+            (None, BitOp::And(..) | BitOp::Or(..) | BitOp::Xor(..) | BitOp::Store(..)) => {
                 unreachable!("operands are made before, and only the above are late")
             }
         }
@@ -242,7 +234,7 @@ impl Lowering<'_, '_> {
 
     fn inverted(&mut self, a: u32) -> Value {
         let a = self.value(a);
-        let ones = self.load(TRUE_WORD);
+        let ones = self.load(Cell::Word(TRUE_WORD));
         self.builder.ins().bxor(a, ones)
     }
 
@@ -269,12 +261,12 @@ impl Lowering<'_, '_> {
         self.builder.ins().band(kept, inner)
     }
 
-    /// Makes the loads of a word that is about to be stored.
-    fn make_pending(&mut self, word: u32) {
-        for load in self.pending.remove(&word).unwrap_or_default() {
+    /// Makes the loads of a place that is about to be stored.
+    fn make_pending(&mut self, cell: Cell) {
+        for load in self.pending.remove(&cell).unwrap_or_default() {
             let index = load as usize;
             if self.uses[index] > 0 && self.held[index].is_none() {
-                let value = self.load(word);
+                let value = self.load(cell);
                 self.held[index] = Some(value);
             }
         }
