@@ -22,7 +22,7 @@ pub struct Loaded {
 
 impl Loaded {
     /// Reads the bytes of a file. What is no text is told in [`Loaded::diagnostics`].
-    pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Self {
+    pub fn decode(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         match Source::decode(name, bytes) {
             Ok(source) => Self::parse(source),
             Err(undecoded) => {

@@ -8,6 +8,7 @@ mod encoding;
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -53,7 +54,8 @@ impl fmt::Debug for Span {
 pub struct Source {
     name: String,
     text: String,
-    line_starts: Vec<u32>,
+    /// Found when a line is first asked for: most sources have nothing to tell of.
+    line_starts: OnceLock<Vec<u32>>,
     /// The files that it is made of, where it is more than one: where each starts, and its name.
     files: Vec<(u32, String)>,
 }
@@ -61,16 +63,7 @@ pub struct Source {
 impl Source {
     /// A source from text. Text above [`MAXIMUM_BYTES`] is for [`Source::decode`] to refuse.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        let text = text.into();
-        let line_starts = std::iter::once(0)
-            .chain(
-                text.bytes()
-                    .enumerate()
-                    .filter(|(_, byte)| *byte == b'\n')
-                    .map(|(at, _)| Span::new(at + 1, at + 1).start),
-            )
-            .collect();
-        Self { name: name.into(), text, line_starts, files: Vec::new() }
+        Self { name: name.into(), text: text.into(), line_starts: OnceLock::new(), files: Vec::new() }
     }
 
     /// The files of a folder as one source, one behind the other, each starting on a line of its own. Their names are kept, so
@@ -111,10 +104,10 @@ impl Source {
     /// # Errors
     /// A source that holds the readable part, with a diagnostic at the first bad byte, when the bytes are not
     /// such text, hold a NUL, or are more than [`MAXIMUM_BYTES`].
-    pub fn decode(name: impl Into<String>, bytes: &[u8]) -> Result<Self, Box<(Self, Diagnostic)>> {
-        let name = name.into();
+    pub fn decode(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Result<Self, Box<(Self, Diagnostic)>> {
+        let (name, mut bytes) = (name.into(), bytes.into());
         if bytes.len() <= MAXIMUM_BYTES
-            && let Some((text, whole)) = encoding::other(bytes)
+            && let Some((text, whole)) = encoding::other(&bytes)
         {
             let at = Span::new(text.len(), text.len());
             if !whole {
@@ -123,22 +116,25 @@ impl Source {
             }
             return Self::without_nul(name, text);
         }
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+        if bytes.starts_with(b"\xEF\xBB\xBF") {
+            bytes.drain(..3);
+        }
         if bytes.len() > MAXIMUM_BYTES {
             let problem =
                 Diagnostic::new(Code::FileTooLarge, Span::default(), format!("this file has {} bytes", bytes.len()))
                     .hint(format!("a source may have at most {MAXIMUM_BYTES} bytes"));
             return Err(Box::new((Self::new(name, ""), problem)));
         }
-        match std::str::from_utf8(bytes) {
+        match String::from_utf8(bytes) {
             Err(error) => {
-                let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).into_owned();
+                let good = error.utf8_error().valid_up_to();
+                let good = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
                 let at = Span::new(good.len(), good.len());
                 let problem =
                     Diagnostic::new(Code::NotText, at, "a byte here is not UTF-8 text").hint("save the file as UTF-8");
                 Err(Box::new((Self::new(name, good), problem)))
             }
-            Ok(text) => Self::without_nul(name, text.to_owned()),
+            Ok(text) => Self::without_nul(name, text),
         }
     }
 
@@ -165,15 +161,22 @@ impl Source {
         self.text.get(span.range()).unwrap_or("")
     }
 
+    fn line_starts(&self) -> &[u32] {
+        self.line_starts.get_or_init(|| {
+            let ends = self.text.match_indices('\n').map(|(at, _)| Span::new(at + 1, at + 1).start);
+            std::iter::once(0).chain(ends).collect()
+        })
+    }
+
     /// The line (from 1) in which a byte stands.
     pub fn line(&self, byte: u32) -> usize {
-        self.line_starts.partition_point(|start| *start <= byte)
+        self.line_starts().partition_point(|start| *start <= byte)
     }
 
     /// The byte range of a line (from 0), its line break included; `None` past the last line.
     pub fn line_range(&self, line: usize) -> Option<Range<usize>> {
-        let start = *self.line_starts.get(line)? as usize;
-        let end = self.line_starts.get(line + 1).map_or(self.text.len(), |next| *next as usize);
+        let start = *self.line_starts().get(line)? as usize;
+        let end = self.line_starts().get(line + 1).map_or(self.text.len(), |next| *next as usize);
         Some(start..end)
     }
 }

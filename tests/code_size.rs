@@ -54,7 +54,7 @@ fn stores(line: &Line) -> bool {
 /// The program of a page, compiled for this machine and decoded.
 fn decoded(name: &str) -> Vec<Line> {
     let text = std::fs::read(docs().join("src").join(name)).expect("a program of the page");
-    let source = Source::decode(name, &text).unwrap_or_else(|_| panic!("{name} is not UTF-8"));
+    let source = Source::decode(name, text).unwrap_or_else(|_| panic!("{name} is not UTF-8"));
     let parsed = frontend::parse(&source);
     let (checked, problems) = check::check(&parsed.program);
     assert!(parsed.diagnostics.is_empty() && problems.is_empty(), "{name} has errors");

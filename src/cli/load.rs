@@ -13,7 +13,7 @@ use crate::source::{MAXIMUM_BYTES, Source};
 
 /// A text file that is no program, such as stimuli or a map.
 pub(crate) fn read_source(path: &Path) -> Result<Source, Failure> {
-    Source::decode(path.display().to_string(), &read_bytes(path)?)
+    Source::decode(path.display().to_string(), read_bytes(path)?)
         .map_err(|undecoded| Failure::diagnostics(&undecoded.0, &[undecoded.1]))
 }
 
@@ -24,7 +24,12 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let read = if path == Path::new("-") {
         std::io::stdin().lock().take(most).read_to_end(&mut bytes)
     } else {
-        std::fs::File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes))
+        std::fs::File::open(path).and_then(|file| {
+            let length = file.metadata().map_or(0, |metadata| metadata.len().min(most));
+            // Less of it only means that the buffer has to grow.
+            let _ = bytes.try_reserve_exact(usize::try_from(length).unwrap_or(0) + 1);
+            file.take(most).read_to_end(&mut bytes)
+        })
     };
     match read {
         Ok(_) => Ok(bytes),
@@ -40,7 +45,7 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     if path.is_dir() {
         return Ok(Loaded::parse(project::read(path)?));
     }
-    Ok(Loaded::decode(path.display().to_string(), &read_bytes(path)?))
+    Ok(Loaded::decode(path.display().to_string(), read_bytes(path)?))
 }
 
 /// Whether a program runs without what Rung has not.

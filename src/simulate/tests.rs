@@ -142,7 +142,7 @@ fn all_mistakes_are_said_up_to_a_hundred() {
 proptest! {
     #[test]
     fn any_bytes_give_stimuli_or_findings(bytes: Vec<u8>) {
-        if let Ok(source) = Source::decode("s.csv", &bytes) {
+        if let Ok(source) = Source::decode("s.csv", bytes) {
             let _ = Stimuli::parse(&source, &layout());
         }
     }

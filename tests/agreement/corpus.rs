@@ -67,7 +67,7 @@ impl Row {
     fn of(file: &Path) -> Self {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let bytes = std::fs::read(file).expect("a file that can be read");
-        let source = Source::decode(name.clone(), &bytes).map_err(|undecoded| undecoded.1).expect("text");
+        let source = Source::decode(name.clone(), bytes).map_err(|undecoded| undecoded.1).expect("text");
         let mut parsed = frontend::parse(&source);
         let rungs = parsed.program.rungs().count();
         let mut said = parsed.diagnostics;

@@ -55,5 +55,5 @@ pub(crate) fn examples() -> Vec<PathBuf> {
 /// A file of text.
 pub(crate) fn source(path: &Path) -> Source {
     let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    Source::decode(path.display().to_string(), &bytes).expect("text")
+    Source::decode(path.display().to_string(), bytes).expect("text")
 }

@@ -55,7 +55,7 @@ fn files(folder: &Path, found: &mut Vec<Drawn>) {
             files(&path, found);
         } else if let Ok(bytes) = std::fs::read(&path)
             && path.extension().is_some_and(|extension| ["rung", "xml", "st"].iter().any(|known| extension == *known))
-            && let Ok(source) = Source::decode(path.display().to_string(), &bytes)
+            && let Ok(source) = Source::decode(path.display().to_string(), bytes)
         {
             found.push(frontend::parse(&source).program);
         }

@@ -40,7 +40,7 @@ fn bytes_that_are_not_of_the_declared_encoding_are_refused() {
     let mut wrong = text.into_bytes();
     let at = wrong.iter().position(|byte| *byte == 0xC3).expect("the sharp s");
     wrong.remove(at);
-    assert!(Source::decode("test.xml", &wrong).is_err());
+    assert!(Source::decode("test.xml", wrong).is_err());
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn other_encodings_are_read() {
     let declared = text.replace("utf-8", "ISO-8859-1");
     let narrow: Vec<u8> = declared.chars().map(|c| u8::try_from(u32::from(c)).expect("it is Latin-1")).collect();
     for bytes in [wide, narrow] {
-        let source = Source::decode("test.xml", &bytes).expect("it is text");
+        let source = Source::decode("test.xml", bytes).expect("it is text");
         assert_eq!(native::print(&rung::frontend::parse(&source).program), expected);
     }
 }

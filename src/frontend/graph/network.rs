@@ -5,7 +5,11 @@
 //! nothing more fits; what is left becomes branches between nodes. That may move nothing across something with an effect:
 //! where it would, every vertex stays a branch of its own, in order of execution.
 
-use std::collections::{BTreeMap, HashMap};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+// Keys are places that this module counts itself, never what a file says.
+use rustc_hash::FxHashMap as HashMap;
 
 use crate::ladder::{
     Argument, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind, Expression, ExpressionKind,
@@ -113,7 +117,7 @@ struct Plan<'v> {
     /// Whether edges are drawn together.
     drawn: bool,
     /// The point of each set of feeds.
-    points: HashMap<Vec<Feed>, Point>,
+    points: HashMap<Cow<'v, [Feed]>, Point>,
     /// For each vertex its pins' regions.
     regions: HashMap<(usize, usize), Region>,
     edges: BTreeMap<Region, Vec<Edge>>,
@@ -130,11 +134,11 @@ impl<'v> Plan<'v> {
             vertices,
             members,
             drawn,
-            points: HashMap::new(),
-            regions: HashMap::new(),
+            points: HashMap::default(),
+            regions: HashMap::default(),
             edges: BTreeMap::new(),
-            uses: HashMap::new(),
-            names: HashMap::new(),
+            uses: HashMap::default(),
+            names: HashMap::default(),
             emitted: Vec::new(),
         };
         plan.lay();
@@ -145,7 +149,7 @@ impl<'v> Plan<'v> {
     fn lay(&mut self) {
         // Sets of feeds, each once, with those who take their power.
         let mut sets: Vec<(&'v [Feed], Vec<User>)> = Vec::new();
-        let mut known: HashMap<Vec<Feed>, usize> = HashMap::new();
+        let mut known: HashMap<Cow<'v, [Feed]>, usize> = HashMap::default();
         let mut note = |feeds: &'v [Feed], user: User| {
             let set = *known.entry(sorted(feeds)).or_insert_with(|| {
                 sets.push((feeds, Vec::new()));
@@ -160,7 +164,7 @@ impl<'v> Plan<'v> {
                 note(&power.feeds, (*member, Some(pin)));
             }
         }
-        let mut of_vertex: HashMap<usize, Vec<usize>> = HashMap::new();
+        let mut of_vertex: HashMap<usize, Vec<usize>> = HashMap::default();
         for (set, (feeds, _)) in sets.iter().enumerate() {
             for feed in *feeds {
                 if let Feed::Vertex(vertex) = feed {
@@ -178,7 +182,7 @@ impl<'v> Plan<'v> {
         }
         // Regions, from the right to the left: a vertex stands where all that take its power do.
         let mut parents: Vec<Region> = vec![0];
-        let mut region_of: HashMap<usize, Region> = HashMap::new();
+        let mut region_of: HashMap<usize, Region> = HashMap::default();
         let mut owners: Vec<Option<Region>> = vec![None; sets.len()];
         for member in self.members.iter().rev() {
             let mut region: Option<Region> = None;
@@ -274,14 +278,15 @@ impl<'v> Plan<'v> {
     fn in_order(&self) -> bool {
         let ranks = |order: &[usize]| {
             let mut rank = 0;
-            let mut ranks = HashMap::new();
+            let mut ranks: HashMap<usize, usize> = HashMap::default();
             for vertex in order {
                 ranks.insert(*vertex, rank);
                 rank += usize::from(self.vertices[*vertex].has_effect());
             }
             ranks
         };
-        self.emitted.len() == self.members.len() && ranks(&self.emitted) == ranks(self.members)
+        self.emitted == self.members
+            || self.emitted.len() == self.members.len() && ranks(&self.emitted) == ranks(self.members)
     }
 
     /// The branches of a region; those that end at `right` give the power of its circuit.
@@ -298,18 +303,21 @@ impl<'v> Plan<'v> {
 
     /// Draws edges between the same two points together.
     fn side_by_side(&mut self, edges: &mut Vec<Edge>) -> Option<bool> {
-        let mut groups: BTreeMap<(Point, Point), Vec<usize>> = BTreeMap::new();
-        for (place, edge) in edges.iter().enumerate() {
-            groups.entry((edge.from, edge.to)).or_default().push(place);
-        }
-        groups.retain(|(from, _), places| places.len() > 1 && *from != Point::Rail);
-        if groups.is_empty() {
+        let mut between: Vec<(Point, Point, usize)> =
+            edges.iter().enumerate().map(|(place, edge)| (edge.from, edge.to, place)).collect();
+        between.sort_unstable();
+        let together =
+            |one: &(Point, Point, usize), other: &(Point, Point, usize)| (one.0, one.1) == (other.0, other.1);
+        let mut groups =
+            between.chunk_by(together).filter(|group| group.len() > 1 && group[0].0 != Point::Rail).peekable();
+        if groups.peek().is_none() {
             return Some(false);
         }
         let mut old: Vec<Option<Edge>> = std::mem::take(edges).into_iter().map(Some).collect();
         let mut merged = Vec::new();
-        for ((from, to), places) in groups {
-            let parts: Vec<Edge> = places.iter().filter_map(|place| old[*place].take()).collect();
+        for group in groups {
+            let (from, to, _) = group[0];
+            let parts: Vec<Edge> = group.iter().filter_map(|(.., place)| old[*place].take()).collect();
             *self.uses.entry(from).or_default() -= parts.len() - 1;
             merged.push(parallel(from, to, parts)?);
         }
@@ -320,35 +328,39 @@ impl<'v> Plan<'v> {
 
     /// Draws edges one behind the other that have a point for themselves; `adjacent`: only where nothing runs between them.
     fn in_row(&self, edges: &mut Vec<Edge>, right: Option<Point>, adjacent: bool) -> bool {
-        let mut entering: HashMap<Point, Vec<usize>> = HashMap::new();
-        let mut leaving: HashMap<Point, Vec<usize>> = HashMap::new();
-        for (place, edge) in edges.iter().enumerate() {
-            entering.entry(edge.to).or_default().push(place);
-            leaving.entry(edge.from).or_default().push(place);
-        }
-        let mut old: Vec<Option<Edge>> = std::mem::take(edges).into_iter().map(Some).collect();
-        let mut changed = false;
-        let mut order: Vec<(Point, usize, Vec<usize>)> = Vec::new();
-        for (point, starts) in leaving {
+        let ends_of = |end: fn(&Edge) -> Point| {
+            let mut ends: Vec<(Point, usize)> =
+                edges.iter().enumerate().map(|(place, edge)| (end(edge), place)).collect();
+            ends.sort_unstable();
+            ends
+        };
+        let (entering, leaving) = (ends_of(|edge| edge.to), ends_of(|edge| edge.from));
+        let mut order: Vec<(usize, &[(Point, usize)])> = Vec::new();
+        for starts in leaving.chunk_by(|one, other| one.0 == other.0) {
+            let [(point, start)] = *starts else { continue };
             if matches!(point, Point::Rail | Point::End) || right == Some(point) {
                 continue;
             }
-            let [start] = starts.as_slice() else { continue };
+            let first = entering.partition_point(|(end, _)| *end < point);
+            let ends = &entering[first..];
+            let ends = &ends[..ends.partition_point(|(end, _)| *end == point)];
             // Something else, perhaps in another region, may take the power there too.
-            if self.uses.get(&point).copied().unwrap_or(0) == 1
-                && let Some(ends) = entering.remove(&point)
-            {
-                order.push((point, *start, ends));
+            if !ends.is_empty() && self.uses.get(&point).copied().unwrap_or(0) == 1 {
+                order.push((start, ends));
             }
         }
-        order.sort_by_key(|(point, ..)| *point);
+        if order.is_empty() {
+            return false;
+        }
+        let mut old: Vec<Option<Edge>> = std::mem::take(edges).into_iter().map(Some).collect();
+        let mut changed = false;
         // From the left, so that a merged edge is found under the place of its left part.
         let mut moved: Vec<usize> = (0..old.len()).collect();
-        for (_, start, ends) in order {
-            if ends.len() > 1 && (adjacent || !ends.iter().all(|end| self.starts_at_rail(&old, &moved, *end))) {
+        for (start, ends) in order {
+            if ends.len() > 1 && (adjacent || !ends.iter().all(|(_, end)| starts_at_rail(&old, &moved, *end))) {
                 continue;
             }
-            let places: Vec<usize> = ends.iter().map(|end| resolve(&moved, *end)).collect();
+            let places: Vec<usize> = ends.iter().map(|(_, end)| resolve(&moved, *end)).collect();
             let start = resolve(&moved, start);
             if places.contains(&start) {
                 continue;
@@ -389,19 +401,15 @@ impl<'v> Plan<'v> {
         changed
     }
 
-    fn starts_at_rail(&self, old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
-        old[resolve(moved, place)].as_ref().is_some_and(|edge| edge.from == Point::Rail)
-    }
-
     /// Edges as branches, each after those that feed its nodes.
     fn branches(&mut self, edges: Vec<Edge>, right: Option<Point>) -> Option<Vec<Branch>> {
-        let mut waiting: HashMap<Point, usize> = HashMap::new();
+        let mut waiting: HashMap<Point, usize> = HashMap::default();
         for edge in edges.iter().filter(|edge| edge.to != Point::End && right != Some(edge.to)) {
             *waiting.entry(edge.to).or_default() += 1;
         }
         let needs: Vec<Vec<Point>> = edges.iter().map(|edge| self.needs(edge)).collect();
         let mut missing: Vec<usize> = Vec::with_capacity(edges.len());
-        let mut blocked: HashMap<Point, Vec<usize>> = HashMap::new();
+        let mut blocked: HashMap<Point, Vec<usize>> = HashMap::default();
         let mut ready = std::collections::BinaryHeap::new();
         let key = |edge: &Edge, place: usize| std::cmp::Reverse((edge.first, !edge.items.is_empty(), place));
         for (place, (edge, needs)) in edges.iter().zip(&needs).enumerate() {
@@ -538,11 +546,18 @@ fn resolve(moved: &[usize], mut place: usize) -> usize {
     place
 }
 
-fn sorted(feeds: &[Feed]) -> Vec<Feed> {
+fn starts_at_rail(old: &[Option<Edge>], moved: &[usize], place: usize) -> bool {
+    old[resolve(moved, place)].as_ref().is_some_and(|edge| edge.from == Point::Rail)
+}
+
+fn sorted(feeds: &[Feed]) -> Cow<'_, [Feed]> {
+    if feeds.is_sorted_by(|one, other| one < other) {
+        return Cow::Borrowed(feeds);
+    }
     let mut feeds = feeds.to_vec();
     feeds.sort_unstable();
     feeds.dedup();
-    feeds
+    Cow::Owned(feeds)
 }
 
 /// The innermost region that holds both.

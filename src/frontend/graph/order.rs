@@ -4,7 +4,7 @@
 //! that nothing reads, by their places: from top to bottom in steps of ten units, from left to right; of those at one place (some
 //! tools write none) by their numbers. A block that is reached again while it is pulled is read as it was left by the scan before.
 
-use super::diagram::{Diagram, ItemKind, Source};
+use super::diagram::{Block, Diagram, ItemKind, Source};
 use super::report::Report;
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -17,18 +17,20 @@ pub(in crate::frontend) struct Order {
 }
 
 /// What an element pulls, in order.
-pub(super) fn sources(kind: &ItemKind) -> Vec<Source> {
-    match kind {
-        ItemKind::Contact { inputs, .. } | ItemKind::Jump { inputs, .. } => inputs.clone(),
-        ItemKind::Coil(coil) => coil.inputs.clone(),
+pub(super) fn sources(kind: &ItemKind) -> impl Iterator<Item = Source> {
+    let (inputs, block): (&[Source], Option<&Block>) = match kind {
+        ItemKind::Contact { inputs, .. } | ItemKind::Jump { inputs, .. } => (inputs, None),
+        ItemKind::Coil(coil) => (&coil.inputs, None),
+        ItemKind::Block(block) => (&[], Some(block)),
+        _ => (&[], None),
+    };
+    let of_pins = block.into_iter().flat_map(|block| {
         // What stands on the left of the box first: EN.
-        ItemKind::Block(block) => {
-            let enable = block.input("EN");
-            let pins = enable.into_iter().chain((0..block.inputs.len()).filter(|pin| Some(*pin) != enable));
-            pins.flat_map(|pin| block.inputs[pin].sources.iter().copied()).collect()
-        }
-        _ => Vec::new(),
-    }
+        let enable = block.input("EN");
+        let pins = enable.into_iter().chain((0..block.inputs.len()).filter(move |pin| Some(*pin) != enable));
+        pins.flat_map(|pin| block.inputs[pin].sources.iter().copied())
+    });
+    inputs.iter().copied().chain(of_pins)
 }
 
 /// The order of a body.
@@ -173,8 +175,7 @@ impl Walk<'_, '_> {
 
     fn open(&mut self, item: usize, stack: &mut Vec<(usize, Vec<usize>)>) {
         self.state[item] = State::Open;
-        let mut needs: Vec<usize> =
-            sources(&self.diagram.items[item].kind).into_iter().filter_map(Source::item).collect();
+        let mut needs: Vec<usize> = sources(&self.diagram.items[item].kind).filter_map(Source::item).collect();
         needs.reverse();
         stack.push((item, needs));
     }

@@ -118,7 +118,7 @@ impl<'d, 'r> Builder<'d, 'r> {
                         input.sources.iter().for_each(|source| note(source, power));
                     }
                 }
-                _ => sources(kind).iter().for_each(|source| note(source, true)),
+                _ => sources(kind).for_each(|source| note(&source, true)),
             }
         }
     }

@@ -51,6 +51,10 @@ pub(super) fn read(body: Node<'_, '_>, report: &mut Report) -> Diagram {
         values: Vec::new(),
         taken: Vec::new(),
     };
+    let elements = body.children().count();
+    reader.ids.reserve(elements);
+    reader.diagram.items.reserve(elements);
+    reader.wires.reserve(elements);
     for node in body.children() {
         reader.element(node);
     }

@@ -2,7 +2,7 @@
 //!
 //! It must stay within bounded memory and time whatever the text: nesting, elements and attributes are limited, there
 //! are no entities but XML's own five, and a document type is refused. What no reader of PLCopen files looks at
-//! (corners of wires, most of tools' own data) is not kept. What a tool keeps in `<addData>` that the standard has a place
+//! (corners of wires, sizes, most of tools' own data) is not kept. What a tool keeps in `<addData>` that the standard has a place
 //! for elsewhere (CODESYS keeps whole applications there) stands in the tree as if it were in the element itself.
 
 use std::borrow::Cow;
@@ -273,7 +273,7 @@ impl<'a> Reading<'a> {
         // The name is the tag's text from its second byte on.
         let name_start = span.range().start + 1;
         let name = self.text.get(name_start..name_start + tag.name().as_ref().len()).unwrap_or("");
-        let name = name.rsplit_once(':').map_or(name, |(_, local)| local);
+        let name = local(name);
         let in_connection =
             self.open.last().is_some_and(|open| self.document.elements[*open as usize].name == "connection");
         if self.skipped > 0 || name == "relPosition" || in_connection && name == "position" {
@@ -310,34 +310,35 @@ impl<'a> Reading<'a> {
 
     fn attributes(&mut self, tag: &BytesStart<'a>, span: Span) -> Result<(u32, u32), Diagnostic> {
         let first = self.document.attributes.len();
-        if tag.attributes_raw().trim().is_empty() {
-            return Ok((0, 0));
-        }
-        // Their names are compared pairwise.
-        if tag.attributes().with_checks(false).take(MOST_OF_ONE + 1).count() > MOST_OF_ONE {
-            return Err(too_large(span, format!("this element has more than {MOST_OF_ONE} attributes")));
-        }
         let base = span.range().start + 1;
         let tag_text = tag.as_ref();
-        for attribute in tag.attributes() {
+        // Names are compared pairwise as they come, so that the limit is one of time too.
+        for (count, attribute) in tag.attributes().enumerate() {
+            if count >= MOST_OF_ONE {
+                return Err(too_large(span, format!("this element has more than {MOST_OF_ONE} attributes")));
+            }
             let attribute = attribute.map_err(|error| malformed(span, error.to_string()))?;
             let key = attribute.key.as_ref();
             // The reader lends from the tag; the tree borrows the same bytes from the text.
             let offset = (key.as_ptr() as usize).wrapping_sub(tag_text.as_ptr() as usize);
-            let key = self.text.get(base + offset..base + offset + key.len()).unwrap_or("");
+            let key = local(self.text.get(base + offset..base + offset + key.len()).unwrap_or(""));
+            if matches!(key, "height" | "width") {
+                continue;
+            }
             let raw = attribute.value.as_ref();
             let offset = (raw.as_ptr() as usize).wrapping_sub(tag_text.as_ptr() as usize);
             let plain = self.text.get(base + offset..base + offset + raw.len());
-            let value = match (plain, raw.contains(['&', '\n', '\t', '\r'])) {
-                (Some(plain), false) => Cow::Borrowed(plain),
-                _ => Cow::Owned(
+            let is_plain = raw.bytes().all(|byte| !matches!(byte, b'&' | b'\n' | b'\t' | b'\r'));
+            let value = match plain.filter(|_| is_plain) {
+                Some(plain) => Cow::Borrowed(plain),
+                None => Cow::Owned(
                     attribute
                         .normalized_value(XmlVersion::Implicit1_0)
                         .map_err(|error| malformed(span, error.to_string()))?
                         .into_owned(),
                 ),
             };
-            self.document.attributes.push((key.rsplit_once(':').map_or(key, |(_, local)| local), value));
+            self.document.attributes.push((key, value));
         }
         let last = self.document.attributes.len();
         if last > MOST_ATTRIBUTES {
@@ -372,7 +373,7 @@ impl<'a> Reading<'a> {
         if self.skipped > 0 {
             return Ok(());
         }
-        let blank = text.trim_start().is_empty();
+        let blank = text.bytes().all(|byte| byte.is_ascii_whitespace()) || text.trim_start().is_empty();
         let Some(open) = self.open.last() else {
             return if blank { Ok(()) } else { Err(malformed(span, "text stands outside of the elements".to_owned())) };
         };
@@ -408,6 +409,11 @@ fn is_read_data(tag: &BytesStart<'_>) -> bool {
         let last = name.rsplit('/').next().unwrap_or(name);
         READ_DATA.iter().any(|known| last.eq_ignore_ascii_case(known))
     })
+}
+
+/// A name without its prefix. Names are short, so that a search made for long texts would take longer.
+fn local(name: &str) -> &str {
+    name.bytes().rposition(|byte| byte == b':').map_or(name, |colon| &name[colon + 1..])
 }
 
 fn malformed(span: Span, message: String) -> Diagnostic {
