@@ -83,11 +83,12 @@ impl Lanes {
     /// When there is no back end for this machine, or none for its vectors; when the program is too large, or looks at
     /// when its own tasks are due; or when memory is refused.
     pub fn compile(program: &Program) -> Result<Self, CompileError> {
-        Self::compile_as(program, true)
+        Self::compile_as(program, true, true)
     }
 
-    /// The same; `recognises` is off where all is to take the general path, for tests.
-    fn compile_as(program: &Program, recognises: bool) -> Result<Self, CompileError> {
+    /// The same, for tests: `recognises` is off where all is to take the general path, and `wide` where vectors are to be
+    /// Cranelift's.
+    fn compile_as(program: &Program, recognises: bool, wide: bool) -> Result<Self, CompileError> {
         debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
         let refused = |reason: String| CompileError::Chunk { sections: 0..program.sections.len(), reason };
         if touches_turns(program) {
@@ -99,7 +100,7 @@ impl Lanes {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;
-        let code = compile::compile(&plan, &*isa)?;
+        let code = compile::compile(&plan, &*isa, wide)?;
         let segments = Segments::install(&code).map_err(CompileError::Memory)?;
         let (turns, dues) = turns(program);
         Ok(Self { layout: program.layout.clone(), plan, segments, turns, dues })

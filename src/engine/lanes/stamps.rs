@@ -84,7 +84,8 @@ impl Stamps {
             stride,
             rows: vec![Word::ZEROS; ROWS * stride],
             low: vec![Word::ZEROS; LOW_BITS * stride],
-            era: vec![Word::ZEROS; count],
+            // By scan 0, in all lanes.
+            era: vec![Word::ONES; count],
             era_before: vec![Word::ZEROS; count],
             high: Vec::new(),
             foreseen: vec![Foreseen::default(); plan.presets.len()],
