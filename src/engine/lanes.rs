@@ -12,6 +12,7 @@
 
 mod columns;
 mod compile;
+mod epoch;
 mod history;
 mod plan;
 mod recognise;
@@ -23,7 +24,7 @@ mod word;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::engine) use compile::Code;
+pub(in crate::engine) use compile::{Code, Through};
 pub(in crate::engine) use word::{VECTORS, Word};
 
 use super::clif::CompileError;
@@ -58,6 +59,8 @@ pub struct Lanes {
     layout: Layout,
     plan: Plan,
     segments: Segments,
+    /// The first of those of an epoch.
+    of_epoch: usize,
     /// By task: when it is due, over an image of nothing but that, and where there.
     turns: Vec<Turn>,
     dues: Layout,
@@ -100,10 +103,10 @@ impl Lanes {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;
-        let code = compile::compile(&plan, &*isa, wide)?;
+        let (code, of_epoch) = compile::compile(&plan, &*isa, wide)?;
         let segments = Segments::install(&code).map_err(CompileError::Memory)?;
         let (turns, dues) = turns(program);
-        Ok(Self { layout: program.layout.clone(), plan, segments, turns, dues })
+        Ok(Self { layout: program.layout.clone(), plan, segments, of_epoch, turns, dues })
     }
 
     /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond
@@ -146,7 +149,10 @@ impl Lanes {
             return Err(Refused);
         }
         let scan = history.begin(now);
-        tracks.begin(&self.plan, history, words);
+        let run = |segment: usize, common: &mut [Word], stamps: &mut [Word], count: usize| {
+            self.segments.run(self.of_epoch + segment, common, stamps, [count, VECTORS]);
+        };
+        tracks.begin(&self.plan, history, words, &run);
         let mut segment = 0;
         for (task, (turn, pieces)) in self.turns.iter().zip(&self.plan.tasks).enumerate() {
             let runs = turn.take(dues, now);
@@ -156,7 +162,7 @@ impl Lanes {
                 match piece {
                     Piece::Segment(_) => {
                         if runs {
-                            self.segments.run(segment, words, row, *vectors);
+                            self.segments.run(segment, words, row, [1, *vectors]);
                         }
                         segment += 1;
                     }

@@ -6,7 +6,7 @@ use std::io;
 use memmap2::{Mmap, MmapMut};
 
 use super::memory::synchronise;
-use crate::engine::lanes::{Code, VECTORS, Word};
+use crate::engine::lanes::{Code, Through, VECTORS, Word};
 
 /// The type of a function: the words, the row of stamps, and the turns.
 type Function = unsafe extern "C" fn(*mut Word, *mut Word, i64);
@@ -14,8 +14,8 @@ type Function = unsafe extern "C" fn(*mut Word, *mut Word, i64);
 /// Installed segments.
 #[derive(Debug)]
 pub(in crate::engine) struct Segments {
-    /// Each with the words that it may reach from its two pointers, and the vectors that a turn goes through.
-    functions: Vec<(Function, [usize; 2], usize)>,
+    /// Each with what it may reach from its two pointers, and the vectors that a turn goes through.
+    functions: Vec<(Function, Through, usize)>,
     /// Where `functions` point to; `None` without any.
     _pages: Option<Mmap>,
 }
@@ -43,26 +43,34 @@ impl Segments {
             let code = pages[*start..].as_ptr();
             // SAFETY: at `code` lies the whole of a function that was compiled for this machine with the signature
             // `Function` and the C calling convention; `_pages` keeps it there as long as the function is known.
-            (unsafe { std::mem::transmute::<*const u8, Function>(code) }, segment.reach, segment.vectors)
+            (unsafe { std::mem::transmute::<*const u8, Function>(code) }, segment.through, segment.vectors)
         };
         let functions = segments.iter().zip(&starts).map(function).collect();
         Ok(Self { functions, _pages: Some(pages) })
     }
 
-    /// Runs a segment, on so many vectors of each word.
+    /// Runs a segment, on so many words one after the other, and so many vectors of each.
     ///
     /// # Panics
-    /// When there are fewer words, or fewer of a row, than the segment was made for; or no vectors, or more than a word
-    /// has.
+    /// When there are fewer words, or fewer of a row, than the segment was made for and is moved on by; or no vectors, or
+    /// more than a word has.
     #[inline]
-    pub(in crate::engine) fn run(&self, segment: usize, words: &mut [Word], row: &mut [Word], vectors: usize) {
-        let (function, [reach, row_reach], of_a_turn) = self.functions[segment];
-        let fits = words.len() >= reach && row.len() >= row_reach && VECTORS.is_multiple_of(of_a_turn);
-        assert!(fits && (1..=VECTORS).contains(&vectors), "too few words for the program");
-        let turns = i64::try_from(vectors.div_ceil(of_a_turn)).unwrap_or(i64::MAX);
-        // SAFETY: in each of its turns, which together go through no more vectors than a word has, the function reads and
-        // writes vectors, aligned as such, of each of the words below its two reaches; both slices are as long. They are
-        // borrowed mutably, so that nobody else sees them, and are apart.
+    pub(in crate::engine) fn run(
+        &self,
+        segment: usize,
+        words: &mut [Word],
+        row: &mut [Word],
+        [count, vectors]: [usize; 2],
+    ) {
+        let (function, Through { reach, moves }, of_a_turn) = self.functions[segment];
+        let last = |moves: bool| if moves { count.saturating_sub(1) } else { 0 };
+        let fits = words.len() >= reach[0] + last(moves[0]) && row.len() >= reach[1] + last(moves[1]);
+        let whole = count > 0 && (1..=VECTORS).contains(&vectors) && VECTORS.is_multiple_of(of_a_turn);
+        assert!(fits && whole, "too few words for the program");
+        let turns = i64::try_from(((count - 1) * VECTORS + vectors).div_ceil(of_a_turn)).unwrap_or(i64::MAX);
+        // SAFETY: in each turn the function reads and writes vectors, aligned as such, of the words below its two reaches,
+        // and moves the pointers on by those vectors, or not at all, `count` words at the most; both slices are as long.
+        // They are borrowed mutably, so that nobody else sees them, and are apart.
         unsafe { function(words.as_mut_ptr(), row.as_mut_ptr(), turns) }
     }
 }

@@ -21,6 +21,7 @@ use cranelift_codegen::ir::{
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
+use super::epoch;
 use super::plan::{BitOp, Cell, Piece, Plan, TRUE_WORD};
 use super::word::Word;
 use crate::engine::clif::{self, CompileError};
@@ -33,6 +34,15 @@ const LINE: u32 = 64;
 /// What holds a vector of a word.
 const VECTOR: Type = types::I8X16;
 
+/// What a function does with its two pointers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::engine) struct Through {
+    /// How many words it may reach from each.
+    pub(in crate::engine) reach: [usize; 2],
+    /// Whether each is moved on by a turn. What one that is not points to has the same in all vectors.
+    pub(in crate::engine) moves: [bool; 2],
+}
+
 /// The code of a segment.
 #[derive(Debug)]
 pub(in crate::engine) struct Code {
@@ -40,44 +50,53 @@ pub(in crate::engine) struct Code {
     pub(in crate::engine) bytes: Vec<u8>,
     /// What its first byte must be aligned to, a power of two.
     pub(in crate::engine) alignment: u32,
-    /// How many words it may reach from each of its pointers.
-    pub(in crate::engine) reach: [usize; 2],
+    /// What it may reach from its pointers.
+    pub(in crate::engine) through: Through,
     /// Vectors of a word that a turn goes through; a word has some such turns.
     pub(in crate::engine) vectors: usize,
 }
 
-/// The code of a plan's segments, in order, made on all cores; it does not depend on how many there are. It may be
-/// `wide` where this machine [has](wide::is_there) such vectors.
+/// The code of a plan's segments, in order, and behind them that of the segments of an [epoch], and where those begin;
+/// made on all cores, and it does not depend on how many there are. It may be `wide` where this machine
+/// [has](wide::is_there) such vectors.
 ///
 /// # Errors
 /// That of the first that has one: when Cranelift refuses it.
-pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa, wide: bool) -> Result<Vec<Code>, CompileError> {
+pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa, wide: bool) -> Result<(Vec<Code>, usize), CompileError> {
+    let of_epoch = if plan.stamps.is_empty() { Vec::new() } else { epoch::segments(plan.stamp_stride()) };
     let pieces = plan.tasks.iter().flatten();
-    let segments: Vec<&[BitOp]> = pieces
-        .filter_map(|piece| match piece {
-            Piece::Segment(ops) => Some(ops.as_slice()),
-            Piece::Steps(_) => None,
-        })
-        .collect();
+    let segments = pieces.filter_map(|piece| match piece {
+        Piece::Segment(ops) => Some(ops),
+        Piece::Steps(_) => None,
+    });
+    let mut segments: Vec<&Vec<BitOp>> = segments.collect();
+    let first = segments.len();
+    segments.extend(&of_epoch);
     let start = || (Context::new(), FunctionBuilderContext::new());
-    let reach = [plan.words, plan.stamps.len()];
     let wide = wide && wide::is_there();
     let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| {
         let instructions = fold(segments[index]);
-        match wide.then(|| wide::assemble(&instructions)).flatten() {
-            Some(bytes) => Ok(Code { bytes, alignment: LINE, reach, vectors: wide::VECTORS }),
-            None => function(index, isa, memory, reach, |builder, pointers| segment(&instructions, builder, pointers)),
+        let through = if index < first {
+            Through { reach: [plan.words, plan.stamps.len()], moves: [true, true] }
+        } else {
+            let last = (epoch::KINDS - 1) * plan.stamp_stride() + 1;
+            Through { reach: [epoch::COMMON, last], moves: [false, true] }
+        };
+        match wide.then(|| wide::assemble(&instructions, through.moves)).flatten() {
+            Some(bytes) => Ok(Code { bytes, alignment: LINE, through, vectors: wide::VECTORS }),
+            None => function(index, isa, memory, through, |builder, pointers| segment(&instructions, builder, pointers)),
         }
     };
-    parallel::each(segments.len(), start, work).into_iter().collect()
+    let code: Result<Vec<Code>, CompileError> = parallel::each(segments.len(), start, work).into_iter().collect();
+    Ok((code?, first))
 }
 
-/// Makes a function of two pointers and of how many vectors they are to be moved on by: a loop over its body.
+/// Makes a function of two pointers and of how many turns to make: a loop over its body.
 fn function(
     index: usize,
     isa: &dyn TargetIsa,
     (context, builder_context): &mut (Context, FunctionBuilderContext),
-    reach: [usize; 2],
+    through: Through,
     body: impl FnOnce(FunctionBuilder<'_>, [Value; 2]) -> FunctionBuilder<'_>,
 ) -> Result<Code, CompileError> {
     context.clear();
@@ -98,7 +117,9 @@ fn function(
         [isa.pointer_type(), isa.pointer_type(), types::I64].map(|ty| builder.append_block_param(turn, ty));
     builder.switch_to_block(turn);
     let mut builder = body(builder, [words, row]);
-    let [words, row] = [words, row].map(|pointer| builder.ins().iadd_imm_s(pointer, i64::from(VECTOR.bytes())));
+    let step = |moves: bool| if moves { i64::from(VECTOR.bytes()) } else { 0 };
+    let [words, row] = [(words, through.moves[0]), (row, through.moves[1])]
+        .map(|(pointer, moves)| builder.ins().iadd_imm_s(pointer, step(moves)));
     let left = builder.ins().iadd_imm_s(left, -1);
     let done = builder.create_block();
     let more = builder.ins().icmp_imm_s(IntCC::NotEqual, left, 0);
@@ -114,7 +135,7 @@ fn function(
         return Err(refused("the code refers to something outside of itself".to_owned()));
     }
     let alignment = isa.function_alignment().minimum.max(compiled.buffer.alignment);
-    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment, reach, vectors: 1 })
+    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment, through, vectors: 1 })
 }
 
 /// Fills a function with a segment.

@@ -226,6 +226,12 @@ impl Plan {
         plan
     }
 
+    /// From one word of a stamp to its next. An odd number of lines of the cache, in which they so do not contend for the
+    /// same place.
+    pub(super) fn stamp_stride(&self) -> usize {
+        self.stamps.len() | 1
+    }
+
     /// Gives each question a stamp, and one to every latch without, and to the other tracked slots that need it. Tells the
     /// stamp of each question.
     fn take_stamps(&mut self, dues: &[Due]) -> HashMap<Due, usize> {

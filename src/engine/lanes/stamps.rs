@@ -15,17 +15,13 @@
 
 use std::ops::Range;
 
+use super::epoch::{
+    BITS, COMMON, ERA, ERA_BEFORE, ERA_BITS, IN_EITHER, IN_ERA, IN_ERA_BEFORE, KINDS, LOW, LOW_BITS, NEXT_BITS,
+    NEXT_IN_ERA, NEXT_IN_ERA_BEFORE, ROW_BITS, ROWS, below, sum,
+};
 use super::history::History;
-use super::plan::Plan;
+use super::plan::{Plan, TRUE_WORD};
 use super::word::Word;
-
-/// Scans of an epoch: a power of two, so that the number of a scan in it is some bits of its number.
-const ROWS: usize = 1 << ROW_BITS;
-const ROW_BITS: usize = 3;
-
-/// Low bits of a scan's number, which are kept up to date with every epoch; and epochs of an era.
-const LOW_BITS: usize = 8;
-const ERA_BITS: usize = LOW_BITS - ROW_BITS;
 
 /// What is foreseen of a preset: how far it reaches in the scan of a row, and whether one further with each after it.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -47,19 +43,21 @@ pub(super) struct Stamps {
     /// How many, and words of a row or plane.
     count: usize,
     stride: usize,
-    /// Rows, one after another.
-    rows: Vec<Word>,
-    /// Planes of the low bits, one after another, the lowest first.
-    low: Vec<Word>,
-    /// The lanes that were set in this era, before this epoch; and those in the era before.
-    era: Vec<Word>,
-    era_before: Vec<Word>,
+    /// Rows, planes of the low bits from the lowest on, and the lanes that were set in this era, before this epoch, and
+    /// in the era before.
+    words: Vec<Word>,
     /// By bit: planes of the high bits of numbers before this era. Those that no number has yet are not there.
     high: Vec<Vec<Word>>,
     foreseen: Vec<Foreseen>,
+    /// What the segments of an epoch are told.
+    common: Vec<Word>,
     /// Presets that reach into this epoch, or will before its end.
     short: Vec<usize>,
 }
+
+/// Runs a segment of [`epoch`](super::epoch), by its number: on the common words, on those of stamps from the first on,
+/// for so many of them.
+pub(super) type Run<'r> = &'r dyn Fn(usize, &mut [Word], &mut [Word], usize);
 
 fn epoch(scan: u64) -> u64 {
     scan >> ROW_BITS
@@ -77,25 +75,32 @@ impl Stamps {
     /// Before the first scan.
     pub(super) fn new(plan: &Plan) -> Self {
         let count = plan.stamps.len();
-        // An odd number of lines of the cache: so rows and planes of a stamp do not contend for the same place in it.
-        let stride = count | 1;
+        let stride = plan.stamp_stride();
+        let mut words = vec![Word::ZEROS; KINDS * stride];
+        // By scan 0, in all lanes.
+        words[ERA * stride..][..count].fill(Word::ONES);
+        let mut common = vec![Word::ZEROS; COMMON];
+        common[TRUE_WORD as usize] = Word::ONES;
         Self {
             count,
             stride,
-            rows: vec![Word::ZEROS; ROWS * stride],
-            low: vec![Word::ZEROS; LOW_BITS * stride],
-            // By scan 0, in all lanes.
-            era: vec![Word::ONES; count],
-            era_before: vec![Word::ZEROS; count],
+            words,
             high: Vec::new(),
             foreseen: vec![Foreseen::default(); plan.presets.len()],
+            common,
             short: Vec::new(),
         }
     }
 
+    /// A word of a stamp.
+    #[inline]
+    fn word(&self, kind: usize, stamp: usize) -> Word {
+        self.words[kind * self.stride + stamp]
+    }
+
     /// The row of a scan of this epoch.
     pub(super) fn row(&mut self, scan: u64) -> &mut [Word] {
-        &mut self.rows[row(scan) * self.stride..][..self.count]
+        &mut self.words[row(scan) * self.stride..][..self.count]
     }
 
     /// Whether a scan that has begun is the first of an epoch, so that the one before is to be summed up.
@@ -105,20 +110,20 @@ impl Stamps {
 
     /// Makes the answers for a scan that has begun.
     #[inline]
-    pub(super) fn begin(&mut self, plan: &Plan, history: &History, words: &mut [Word]) {
+    pub(super) fn begin(&mut self, plan: &Plan, history: &History, words: &mut [Word], run: Run<'_>) {
         let scan = history.last();
         if row(scan) == 0 {
             plan.stamps.iter().filter_map(|stamp| stamp.recent).for_each(|word| words[word as usize] = Word::ZEROS);
             self.short.clear();
         }
         if row(scan) == 0 || !history.went_on() {
-            self.foresee_all(plan, history);
+            self.foresee_all(plan, history, run);
         }
         for preset in &self.short {
             let end = history.reach(*preset);
             if epoch(end) == epoch(scan) {
                 for stamp in plan.presets[*preset].stamps.clone() {
-                    let after = (row(end)..row(scan)).map(|row| self.rows[row * self.stride + stamp]);
+                    let after = (row(end)..row(scan)).map(|row| self.word(row, stamp));
                     let recent = after.fold(Word::ZEROS, |recent, row| recent | row);
                     if let Some(word) = plan.stamps[stamp].recent {
                         words[word as usize] = recent;
@@ -139,7 +144,7 @@ impl Stamps {
     }
 
     /// Makes the answers that were not foreseen, from the scan on that has begun.
-    fn foresee_all(&mut self, plan: &Plan, history: &History) {
+    fn foresee_all(&mut self, plan: &Plan, history: &History, run: Run<'_>) {
         let scan = history.last();
         let from = row(scan);
         for (index, preset) in plan.presets.iter().enumerate() {
@@ -152,7 +157,9 @@ impl Stamps {
             if epoch(new.end_at(ROWS - 1)) >= epoch(scan) && !self.short.contains(&index) {
                 self.short.push(index);
             }
-            self.foresee(preset.stamps.clone(), new, epoch(scan));
+            if !self.foresee_quickly(preset.stamps.clone(), new, epoch(scan), run) {
+                self.foresee(preset.stamps.clone(), new, epoch(scan));
+            }
         }
     }
 
@@ -161,18 +168,18 @@ impl Stamps {
         let Foreseen { row: from, end, goes_on } = foreseen;
         let (first, first_row) = (epoch(end), row(end));
         let reaches_next = goes_on && first_row + (ROWS - 1 - from) >= ROWS;
-        let low = &self.low;
         for stamp in stamps {
-            let plane = |bit: usize| low[bit * self.stride + stamp];
             let (before, within) = self.around(stamp, first, this);
             let next = if reaches_next { self.around(stamp, first + 1, this).1 } else { Word::ZEROS };
-            let below = below([plane(0), plane(1), plane(2)]);
+            let below = below(std::array::from_fn(|bit| self.word(LOW + bit, stamp)));
             let before_next = before | within;
             for row in from..ROWS {
                 let end = first_row + if goes_on { row - from } else { 0 };
-                self.rows[row * self.stride + stamp] = match end.checked_sub(ROWS) {
-                    None => before | within & below[end],
-                    Some(end) => before_next | next & below[end],
+                self.words[row * self.stride + stamp] = match end % ROWS {
+                    0 if end == 0 => before,
+                    0 => before_next,
+                    below_end if end < ROWS => before | within & below[below_end - 1],
+                    below_end => before_next | next & below[below_end - 1],
                 };
             }
         }
@@ -181,13 +188,13 @@ impl Stamps {
     /// The lanes that were last set before an epoch, and those in it, of what was before this one.
     #[inline]
     fn around(&self, stamp: usize, epoch: u64, this: u64) -> (Word, Word) {
-        let in_era = self.era[stamp];
+        let in_era = self.word(ERA, stamp);
         let (mut before, mut within) = match era(this).checked_sub(era(epoch)) {
             // Later than all that was.
             None => return (Word::ONES, Word::ZEROS),
             Some(0) => (!in_era, in_era),
             Some(1) => {
-                let within = self.era_before[stamp] & !in_era;
+                let within = self.word(ERA_BEFORE, stamp) & !in_era;
                 (!(in_era | within), within)
             }
             Some(_) => {
@@ -199,31 +206,49 @@ impl Stamps {
             }
         };
         for bit in (0..ERA_BITS).rev() {
-            let plane = self.low[(ROW_BITS + bit) * self.stride + stamp];
+            let plane = self.word(LOW + ROW_BITS + bit, stamp);
             narrow(&mut before, &mut within, plane, epoch >> bit & 1 != 0);
         }
         (before, within)
     }
 
     /// Adds the rows of the epoch that ends, before the scan that has begun, to the numbers.
-    pub(super) fn end_epoch(&mut self, history: &History) {
+    pub(super) fn end_epoch(&mut self, history: &History, run: Run<'_>) {
         let ended = epoch(history.last()) - 1;
-        for stamp in 0..self.count {
-            let (any, number) = self.sum(stamp);
-            let plane = |bit: usize| bit * self.stride + stamp;
-            for (bit, new) in number.into_iter().enumerate() {
-                let plane = &mut self.low[plane(bit)];
-                *plane = *plane & !any | new;
-            }
-            for bit in 0..ERA_BITS {
-                let plane = &mut self.low[plane(ROW_BITS + bit)];
-                *plane = if ended >> bit & 1 != 0 { *plane | any } else { *plane & !any };
-            }
-            self.era[stamp] |= any;
-        }
+        self.tell_bits(BITS, ended);
+        run(0, &mut self.common, &mut self.words, self.count);
         if era(ended) != era(ended + 1) {
             self.end_era(era(ended));
         }
+    }
+
+    /// Tells the segments the bits of an epoch.
+    fn tell_bits(&mut self, first: usize, epoch: u64) {
+        for (bit, word) in self.common[first..][..ERA_BITS].iter_mut().enumerate() {
+            *word = Word::all(epoch >> bit & 1 != 0);
+        }
+    }
+
+    /// Makes the answers of some stamps for all scans of this epoch, by a segment, if what is foreseen is the common case.
+    fn foresee_quickly(&mut self, stamps: Range<usize>, foreseen: Foreseen, this: u64, run: Run<'_>) -> bool {
+        let Foreseen { row: from, end, goes_on } = foreseen;
+        let eras = [epoch(end), epoch(end) + 1].map(|epoch| era(this).checked_sub(era(epoch)));
+        if from > 0 || !goes_on || eras[0].is_some_and(|ago| ago > 1) {
+            return false;
+        }
+        self.tell_bits(BITS, epoch(end));
+        self.tell_bits(NEXT_BITS, epoch(end) + 1);
+        for (word, holds) in [
+            (IN_ERA, eras[0] == Some(0)),
+            (IN_ERA_BEFORE, eras[0] == Some(1)),
+            (IN_EITHER, eras[0].is_some()),
+            (NEXT_IN_ERA, eras[1] == Some(0)),
+            (NEXT_IN_ERA_BEFORE, eras[1] == Some(1)),
+        ] {
+            self.common[word] = Word::all(holds);
+        }
+        run(1 + row(end), &mut self.common, &mut self.words[stamps.start..], stamps.len());
+        true
     }
 
     /// Brings the high bits of the numbers up to date.
@@ -232,32 +257,19 @@ impl Stamps {
             self.high.push(vec![Word::ZEROS; self.count]);
         }
         for (bit, plane) in self.high.iter_mut().enumerate() {
-            for (plane, any) in plane.iter_mut().zip(&self.era) {
+            for (plane, any) in plane.iter_mut().zip(&self.words[ERA * self.stride..]) {
                 *plane = if ended >> bit & 1 != 0 { *plane | *any } else { *plane & !*any };
             }
         }
-        std::mem::swap(&mut self.era, &mut self.era_before);
-        self.era.fill(Word::ZEROS);
-    }
-
-    /// Of all rows: the lanes with any, and the bits of the last row that has each, the lowest first.
-    #[inline]
-    fn sum(&self, stamp: usize) -> (Word, [Word; ROW_BITS]) {
-        let row = |row: usize| self.rows[row * self.stride + stamp];
-        // Of two halves, the later counts in the lanes that it has, and whether it has is the bit that tells them apart.
-        let two = |first: usize| (row(first) | row(first + 1), row(first + 1));
-        let four = |first: usize| {
-            let ((early, early_0), (late, late_0)) = (two(first), two(first + 2));
-            (early | late, early_0 & !late | late_0, late)
-        };
-        let ((early, early_0, early_1), (late, late_0, late_1)) = (four(0), four(4));
-        (early | late, [early_0 & !late | late_0, early_1 & !late | late_1, late])
+        self.words.copy_within(ERA * self.stride..(ERA + 1) * self.stride, ERA_BEFORE * self.stride);
+        self.words[ERA * self.stride..][..self.stride].fill(Word::ZEROS);
     }
 
     /// The lanes in which the last scan of this epoch that set one stamp is not after the last that set another, if any
     /// set that; a scan of an earlier epoch counts as before all. All rows must have been set.
     pub(super) fn not_after(&self, one: usize, other: usize) -> Word {
-        let ((any, number), (other_any, other_number)) = (self.sum(one), self.sum(other));
+        let ((any, number), (other_any, other_number)) =
+            [one, other].map(|stamp| sum(std::array::from_fn(|row| self.word(row, stamp)))).into();
         let (mut less, mut same) = (Word::ZEROS, Word::ONES);
         for (bit, other_bit) in number.into_iter().zip(other_number).rev() {
             less |= same & other_bit & !bit;
@@ -271,12 +283,12 @@ impl Stamps {
     /// `until` must not be before the scan that set it last, if that is of an earlier epoch than the last one's.
     pub(super) fn last_set(&self, stamp: usize, lane: usize, last: u64, until: u64) -> u64 {
         let rows = epoch(last) * ROWS as u64..until.min(last + 1);
-        let in_rows = rows.rev().find(|scan| self.rows[row(*scan) * self.stride + stamp].get(lane));
+        let in_rows = rows.rev().find(|scan| self.word(row(*scan), stamp).get(lane));
         in_rows.unwrap_or_else(|| {
             let bit = |(bit, plane): (usize, Word)| u64::from(plane.get(lane)) << bit;
-            let low: u64 = self.low[stamp..].iter().step_by(self.stride).copied().enumerate().map(bit).sum();
+            let low: u64 = (0..LOW_BITS).map(|at| bit((at, self.word(LOW + at, stamp)))).sum();
             let high: u64 = self.high.iter().map(|plane| plane[stamp]).enumerate().map(bit).sum();
-            let high = if self.era[stamp].get(lane) { era(epoch(last)) } else { high };
+            let high = if self.word(ERA, stamp).get(lane) { era(epoch(last)) } else { high };
             high << LOW_BITS | low
         })
     }
@@ -292,20 +304,4 @@ fn narrow(before: &mut Word, within: &mut Word, plane: Word, bit: bool) {
     } else {
         *within &= !plane;
     }
-}
-
-/// The lanes in which a number of three bits is below 0, 1, up to 7.
-#[inline]
-fn below([low, middle, high]: [Word; ROW_BITS]) -> [Word; ROWS] {
-    let any = low | middle;
-    [
-        Word::ZEROS,
-        !(any | high),
-        !(middle | high),
-        !(high | low & middle),
-        !high,
-        !(high & any),
-        !(high & middle),
-        !(high & middle & low),
-    ]
 }

@@ -17,7 +17,7 @@ use super::LANES;
 use super::history::History;
 use super::plan::{Plan, Track};
 use super::recognise::Leaf;
-use super::stamps::Stamps;
+use super::stamps::{Run, Stamps};
 use super::word::Word;
 
 /// Values that are kept for themselves, of lanes with code 0.
@@ -41,11 +41,11 @@ impl Tracks {
 
     /// Makes ready for a scan that has begun.
     #[inline]
-    pub(super) fn begin(&mut self, plan: &Plan, history: &History, words: &mut [Word]) {
+    pub(super) fn begin(&mut self, plan: &Plan, history: &History, words: &mut [Word], run: Run<'_>) {
         if self.stamps.ends_epoch(history) {
-            self.end_epoch(plan, history, words);
+            self.end_epoch(plan, history, words, run);
         }
-        self.stamps.begin(plan, history, words);
+        self.stamps.begin(plan, history, words, run);
     }
 
     /// Notes whether a task runs in a scan that has begun, before it does.
@@ -61,7 +61,7 @@ impl Tracks {
     /// Keeps the differences that cannot be told any more once an epoch is summed up, and sums it up.
     #[cold]
     #[inline(never)]
-    fn end_epoch(&mut self, plan: &Plan, history: &History, words: &mut [Word]) {
+    fn end_epoch(&mut self, plan: &Plan, history: &History, words: &mut [Word], run: Run<'_>) {
         let last = history.last() - 1;
         for (index, track) in plan.tracks.iter().enumerate().filter(|(_, track)| !track.tracked.follows) {
             let moved = track.since.iter().fold(Word::ZEROS, |all, (code, latch)| {
@@ -72,7 +72,7 @@ impl Tracks {
                 self.keep(track, words, (index, lane), value);
             }
         }
-        self.stamps.end_epoch(history);
+        self.stamps.end_epoch(history, run);
     }
 
     /// The lanes in which a slot holds a difference, as a code says, to a latch that was set in the same scan or later,

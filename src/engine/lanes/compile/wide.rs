@@ -58,8 +58,8 @@ pub(super) fn is_there() -> bool {
     }
 }
 
-/// The code of a segment, unless too many of its values are needed at once.
-pub(super) fn assemble(instructions: &[Instruction]) -> Option<Vec<u8>> {
+/// The code of a segment, unless too many of its values are needed at once; `moves` tells which pointers a turn moves on.
+pub(super) fn assemble(instructions: &[Instruction], moves: [bool; 2]) -> Option<Vec<u8>> {
     let mut uses = vec![Vec::new(); instructions.len()];
     for (index, instruction) in instructions.iter().enumerate().rev() {
         instruction.made().for_each(|made| uses[made as usize].push(index));
@@ -78,11 +78,11 @@ pub(super) fn assemble(instructions: &[Instruction]) -> Option<Vec<u8>> {
     if body.slots > MOST_SLOTS {
         return None;
     }
-    around(&body.bytes, body.slots * u32::from(BYTES))
+    around(&body.bytes, body.slots * u32::from(BYTES), moves)
 }
 
 /// A loop around its body, and a frame of so many bytes around the loop.
-fn around(body: &[u8], frame: u32) -> Option<Vec<u8>> {
+fn around(body: &[u8], frame: u32, moves: [bool; 2]) -> Option<Vec<u8>> {
     let mut code = Code::default();
     if frame > 0 {
         // sub rsp, frame
@@ -93,7 +93,12 @@ fn around(body: &[u8], frame: u32) -> Option<Vec<u8>> {
     let start = code.bytes.len();
     code.bytes.extend(body);
     // add rdi, 32; add rsi, 32; sub rdx, 1; jnz start
-    code.bytes.extend([0x48, 0x83, 0xC7, BYTES, 0x48, 0x83, 0xC6, BYTES, 0x48, 0x83, 0xEA, 1, 0x0F, 0x85]);
+    for (base, moves) in [WORDS, ROW].into_iter().zip(moves) {
+        if moves {
+            code.bytes.extend([0x48, 0x83, 0xC0 | base, BYTES]);
+        }
+    }
+    code.bytes.extend([0x48, 0x83, 0xEA, 1, 0x0F, 0x85]);
     let back = i32::try_from(code.bytes.len() + 4 - start).ok()?;
     code.bytes.extend((-back).to_le_bytes());
     if frame > 0 {
