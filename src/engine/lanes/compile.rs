@@ -84,7 +84,9 @@ pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa, wide: bool) -> Result<(V
         };
         match wide.then(|| wide::assemble(&instructions, through.moves)).flatten() {
             Some(bytes) => Ok(Code { bytes, alignment: LINE, through, vectors: wide::VECTORS }),
-            None => function(index, isa, memory, through, |builder, pointers| segment(&instructions, builder, pointers)),
+            None => {
+                function(index, isa, memory, through, |builder, pointers| segment(&instructions, builder, pointers))
+            }
         }
     };
     let code: Result<Vec<Code>, CompileError> = parallel::each(segments.len(), start, work).into_iter().collect();

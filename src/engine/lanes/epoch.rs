@@ -92,7 +92,8 @@ fn sum_up(recorder: &Recorder) {
 fn foresee(recorder: &Recorder, reached: usize) {
     let in_era = recorder.load(ERA);
     let in_era_before = recorder.load(ERA_BEFORE) & !in_era;
-    let within = |here: usize, earlier: usize| in_era & recorder.common(here) | in_era_before & recorder.common(earlier);
+    let within =
+        |here: usize, earlier: usize| in_era & recorder.common(here) | in_era_before & recorder.common(earlier);
     let mut first = within(IN_ERA, IN_ERA_BEFORE);
     let mut before = !(in_era & recorder.common(IN_EITHER) | in_era_before & recorder.common(IN_ERA_BEFORE));
     let mut next = within(NEXT_IN_ERA, NEXT_IN_ERA_BEFORE);

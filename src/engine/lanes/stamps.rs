@@ -51,6 +51,8 @@ pub(super) struct Stamps {
     foreseen: Vec<Foreseen>,
     /// What the segments of an epoch are told.
     common: Vec<Word>,
+    /// The epoch that they were told of, and in which.
+    told: Option<(u64, u64)>,
     /// Presets that reach into this epoch, or will before its end.
     short: Vec<usize>,
 }
@@ -88,6 +90,7 @@ impl Stamps {
             high: Vec::new(),
             foreseen: vec![Foreseen::default(); plan.presets.len()],
             common,
+            told: None,
             short: Vec::new(),
         }
     }
@@ -215,6 +218,7 @@ impl Stamps {
     /// Adds the rows of the epoch that ends, before the scan that has begun, to the numbers.
     pub(super) fn end_epoch(&mut self, history: &History, run: Run<'_>) {
         let ended = epoch(history.last()) - 1;
+        self.told = None;
         self.tell_bits(BITS, ended);
         run(0, &mut self.common, &mut self.words, self.count);
         if era(ended) != era(ended + 1) {
@@ -236,16 +240,20 @@ impl Stamps {
         if from > 0 || !goes_on || eras[0].is_some_and(|ago| ago > 1) {
             return false;
         }
-        self.tell_bits(BITS, epoch(end));
-        self.tell_bits(NEXT_BITS, epoch(end) + 1);
-        for (word, holds) in [
-            (IN_ERA, eras[0] == Some(0)),
-            (IN_ERA_BEFORE, eras[0] == Some(1)),
-            (IN_EITHER, eras[0].is_some()),
-            (NEXT_IN_ERA, eras[1] == Some(0)),
-            (NEXT_IN_ERA_BEFORE, eras[1] == Some(1)),
-        ] {
-            self.common[word] = Word::all(holds);
+        // Presets side by side often reach the same epoch.
+        if self.told != Some((epoch(end), this)) {
+            self.told = Some((epoch(end), this));
+            self.tell_bits(BITS, epoch(end));
+            self.tell_bits(NEXT_BITS, epoch(end) + 1);
+            for (word, holds) in [
+                (IN_ERA, eras[0] == Some(0)),
+                (IN_ERA_BEFORE, eras[0] == Some(1)),
+                (IN_EITHER, eras[0].is_some()),
+                (NEXT_IN_ERA, eras[1] == Some(0)),
+                (NEXT_IN_ERA_BEFORE, eras[1] == Some(1)),
+            ] {
+                self.common[word] = Word::all(holds);
+            }
         }
         run(1 + row(end), &mut self.common, &mut self.words[stamps.start..], stamps.len());
         true

@@ -64,9 +64,10 @@ impl Tracks {
     fn end_epoch(&mut self, plan: &Plan, history: &History, words: &mut [Word], run: Run<'_>) {
         let last = history.last() - 1;
         for (index, track) in plan.tracks.iter().enumerate().filter(|(_, track)| !track.tracked.follows) {
-            let moved = track.since.iter().fold(Word::ZEROS, |all, (code, latch)| {
-                all | self.moved(track, &plan.tracks[*latch], *code, words)
-            });
+            let moved = track
+                .since
+                .iter()
+                .fold(Word::ZEROS, |all, (code, latch)| all | self.moved(track, &plan.tracks[*latch], *code, words));
             for lane in moved.lanes() {
                 let value = self.value(plan, history, words, (index, lane), last);
                 self.keep(track, words, (index, lane), value);
@@ -104,7 +105,9 @@ impl Tracks {
     fn value(&self, plan: &Plan, history: &History, words: &[Word], place: (usize, usize), last: u64) -> u64 {
         let (index, lane) = place;
         let track = &plan.tracks[index];
-        let set = |track: &Track, until: u64| track.stamps.first().map(|stamp| self.stamps.last_set(*stamp, lane, last, until));
+        let set = |track: &Track, until: u64| {
+            track.stamps.first().map(|stamp| self.stamps.last_set(*stamp, lane, last, until))
+        };
         let time = |scan: u64| history.time(scan).cast_unsigned();
         if index < plan.latches {
             // Before it was ever set, it holds the time 0, which is that of scan 0.

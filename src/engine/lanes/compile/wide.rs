@@ -9,6 +9,9 @@
 //! The function is the same as the others, by the System V convention: the words in `rdi`, the row in `rsi`, the turns
 //! in `rdx`.
 
+#[cfg(test)]
+mod tests;
+
 use super::fold::{Instruction, Operand};
 use super::way;
 use crate::engine::lanes::plan::Cell;
