@@ -145,6 +145,8 @@ codes! {
     BadAssertion = 920 Error "an assertion that cannot be used",
     AssertionFails = 921 Error "an assertion does not hold",
     CannotBatch = 922 Error "so many plants cannot be run",
+    // Measuring.
+    CompilerFails = 940 Error "a C compiler did not do as expected",
     // Running.
     BadTiming = 1001 Error "times that do not go together",
     CannotStart = 1002 Error "the program cannot be started",

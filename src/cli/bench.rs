@@ -1,60 +1,54 @@
-//! `rung bench`: every engine on the given programs, side by side.
+//! `rung bench`: every engine on the given programs, side by side, and what C compilers make of them.
 //!
 //! Every engine gets the same images at the same times. What is measured is the scan alone: the inputs are changed
 //! between the measured scans, a tenth of the BOOLs each time. The engines take turns, so that whatever else the
-//! machine does hits all of them alike, and the figures are medians over the turns. All tasks run in every scan.
+//! machine does hits all of them alike, and the figures are medians over the turns. All tasks run in every scan. Nothing is
+//! measured that does not leave the image that the first engine leaves.
 
+mod chart;
+mod compiler;
+mod engine;
+mod paper;
 mod plant;
+mod table;
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use rung_runtime::Scan;
-use target_lexicon::Triple;
-
-use super::{Failure, Missing, load_checked, print};
+use super::{Failure, Missing, duration, load_checked, print, report, write_whole};
 use crate::diagnostic::Code;
-use crate::engine::disassemble::lines;
-use crate::engine::interp::{Interpreter, Textbook};
-use crate::engine::jit::{Jit, host_isa};
 use crate::logic::Program;
 use crate::{lower, opt};
-use plant::Plant;
+use engine::{Engine, Subject};
+use table::{Measured, Row};
 
-/// Measures every engine on the given programs
+/// Measures every engine on the given programs, and what gcc and clang make of them where they are installed
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// The programs
-    #[arg(required = true)]
+    #[arg(required_unless_present = "paper")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     missing: Missing,
-    /// Only this engine
+    /// Only this engine; may be given several times [default: all but gcc-whole]
     #[arg(long)]
-    engine: Option<Engine>,
+    engine: Vec<Engine>,
     /// Run exactly so many scans, for counting instructions, instead of as many as measuring takes
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     scans: Option<u64>,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, clap::ValueEnum)]
-enum Engine {
-    Jit,
-    Interp,
-    Textbook,
-}
-
-impl Engine {
-    const ALL: [Self; 3] = [Self::Jit, Self::Interp, Self::Textbook];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Jit => "jit",
-            Self::Interp => "interp",
-            Self::Textbook => "textbook",
-        }
-    }
+    /// How long a C compiler may take before it is stopped
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse)]
+    patience: i64,
+    /// Also write what was measured as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Also draw it
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Measure programs of the sizes that the literature measured, 18 rungs with 3 timers and 1451 with 246, and print
+    /// the ratios beside those
+    #[arg(long)]
+    paper: bool,
 }
 
 /// Turns that the median is taken of, and how long one should take.
@@ -62,24 +56,61 @@ const TURNS: usize = 41;
 const TURN_TIME: Duration = Duration::from_millis(10);
 /// Scans of a turn, also of a program that takes no time.
 const MOST_SCANS: u64 = 1 << 20;
+/// Scans after which the images of all engines are compared.
+const COMPARED_SCANS: u64 = 64;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut table = format!(
-        "{:<20} {:>6} {:<8} {:>11} {:>8} {:>7}  {:<BAR$} {:>10} {:>10} {:>10}\n",
-        "program", "rungs", "engine", "ns/scan", "ns/rung", "ratio", "", "compile ms", "bytes/rung", "instr/rung"
-    );
+    let mut measured = Vec::new();
+    if arguments.paper {
+        for program in paper::programs() {
+            measured.push(measure(arguments, program)?);
+        }
+    }
     for path in &arguments.files {
         let (loaded, checked) = load_checked(path, arguments.missing)?;
         let program = lower::lower(&checked, &loaded.source, None)
             .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
-        let mut program = opt::optimise(program);
-        every_task_every_scan(&mut program);
-        let chosen = Engine::ALL.into_iter().filter(|engine| arguments.engine.is_none_or(|only| only == *engine));
-        let mut subjects = chosen.map(|engine| Subject::new(engine, &program)).collect::<Result<Vec<_>, _>>()?;
-        let medians = measure(&mut subjects, arguments.scans);
-        table.push_str(&rows(&program, &subjects, &medians));
+        measured.push(measure(arguments, program)?);
     }
-    print(&table)
+    let mut text = table::text(&measured);
+    if arguments.paper {
+        text.push_str(&paper::ratios(&measured));
+    }
+    if let Some(path) = &arguments.json {
+        write_whole(path, table::json(&measured).as_bytes())?;
+    }
+    if let Some(path) = &arguments.svg {
+        write_whole(path, chart::draw(&measured).as_bytes())?;
+    }
+    print(&text)
+}
+
+/// All engines on one program, which is lowered and not yet optimised.
+fn measure(arguments: &Arguments, mut lowered: Program) -> Result<Measured, Failure> {
+    every_task_every_scan(&mut lowered);
+    let optimised = opt::optimise(lowered.clone());
+    let patience = Duration::from_nanos(arguments.patience.unsigned_abs());
+    let chosen: Vec<Engine> = match arguments.engine.as_slice() {
+        [] => Engine::ALL.into_iter().filter(|engine| *engine != Engine::GccWhole).collect(),
+        chosen => chosen.to_vec(),
+    };
+    let mut rows = Vec::new();
+    let mut subjects = Vec::new();
+    for engine in chosen {
+        let (row, subject) = prepare(engine, &lowered, &optimised, patience)?;
+        match (row.missing, arguments.engine.is_empty()) {
+            (true, true) => continue,
+            (true, false) => report(&format!("{}: the compiler is not installed\n", engine.name())),
+            (false, _) => {}
+        }
+        subjects.extend(subject.map(|subject| (rows.len(), subject)));
+        rows.push(row);
+    }
+    compare(&lowered, &rows, &subjects)?;
+    for (row, nanoseconds) in take_turns(&mut subjects, arguments.scans)? {
+        rows[row].nanoseconds = Some(nanoseconds);
+    }
+    Ok(Measured { program: lowered.name.clone(), rungs: lowered.sections.len(), rows })
 }
 
 /// Makes every task due in every scan: what is to be known is how long a round takes at most.
@@ -89,119 +120,90 @@ fn every_task_every_scan(program: &mut Program) {
     }
 }
 
-/// The rows of one program. Ratios are to the fastest engine, and a full bar is the slowest.
-fn rows(program: &Program, subjects: &[Subject<'_>], medians: &[f64]) -> String {
-    // A clock may be too coarse to see a scan at all.
-    let (fastest, slowest) =
-        medians.iter().fold((f64::INFINITY, 0.1f64), |(least, most), median| (least.min(*median), most.max(*median)));
-    let sections = program.sections.len();
-    let a_rung = |count: f64| if sections == 0 { "-".to_owned() } else { format!("{:.1}", count / to_f64(sections)) };
-    let mut rows = String::new();
-    for (subject, median) in subjects.iter().zip(medians) {
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            rows,
-            "{:<20} {:>6} {:<8} {:>11.1} {:>8} {:>7.2}  {:<BAR$} {:>10.2} {:>10} {:>10}",
-            program.name,
-            sections,
-            subject.engine.name(),
-            median,
-            a_rung(*median),
-            median / fastest.max(0.1),
-            bar(*median / slowest),
-            subject.compile.as_secs_f64() * 1e3,
-            a_rung(to_f64(subject.code_bytes)),
-            subject.instructions.map_or_else(|| "-".to_owned(), |count| a_rung(to_f64(count))),
-        );
-    }
-    rows
-}
-
-/// Cells of the longest bar.
-const BAR: usize = 16;
-
-/// A bar of a length from 0 to 1, at least a sliver.
-fn bar(share: f64) -> String {
-    (0..BAR).take_while(|cell| *cell == 0 || share * to_f64(BAR) >= to_f64(*cell) + 0.5).map(|_| '█').collect()
-}
-
-/// An engine that is ready to run, and its plant.
-struct Subject<'p> {
+/// An engine ready to run, and what is known of it before it does; no subject where there is no compiler or too little time.
+fn prepare<'p>(
     engine: Engine,
-    scan: Box<dyn Scan>,
-    plant: Plant<'p>,
-    compile: Duration,
-    /// Bytes of machine code, or of what the engine has in its place.
-    code_bytes: usize,
-    /// Machine instructions of a scan: exact, since the code is a straight line. `None` where they are not known.
-    instructions: Option<usize>,
-}
-
-impl<'p> Subject<'p> {
-    fn new(engine: Engine, program: &'p Program) -> Result<Self, Failure> {
-        let start = Instant::now();
-        let (scan, code_bytes, instructions, compile): (Box<dyn Scan>, _, _, _) = match engine {
-            Engine::Jit => {
-                let refused = |error: String| Failure::new(Code::CannotCompile, error);
-                let jit = Jit::compile(program).map_err(|error| refused(error.to_string()))?;
-                let compile = start.elapsed();
-                let instructions = host_isa().ok().and_then(|isa| instructions(&jit, isa.triple()).ok());
-                let bytes = jit.code_bytes();
-                (Box::new(jit), bytes, instructions, compile)
-            }
-            Engine::Interp => {
-                let interpreter = Interpreter::new(program);
-                let bytes = interpreter.code_bytes();
-                (Box::new(interpreter), bytes, None, start.elapsed())
-            }
-            Engine::Textbook => {
-                let textbook = Textbook::new(program);
-                (Box::new(textbook), size_of_val(program.instructions.as_slice()), None, start.elapsed())
-            }
-        };
-        Ok(Self { engine, scan, plant: Plant::new(program), compile, code_bytes, instructions })
+    lowered: &'p Program,
+    optimised: &'p Program,
+    patience: Duration,
+) -> Result<(Row, Option<Subject<'p>>), Failure> {
+    let mut row = Row::new(engine.name());
+    if engine.compiler().is_none() {
+        let (subject, facts) = Subject::native(engine, lowered, optimised)?;
+        row.compile_ms = Some(facts.compile.as_secs_f64() * 1e3);
+        row.code_bytes = Some(facts.code_bytes);
+        row.instructions = facts.instructions.map(to_f64);
+        return Ok((row, Some(subject)));
     }
-
-    /// Runs scans; gives nanoseconds a scan.
-    fn run(&mut self, scans: u64) -> f64 {
-        self.plant.run(self.scan.as_mut(), scans)
-    }
-}
-
-/// Machine instructions of one scan.
-fn instructions(jit: &Jit, target: &Triple) -> Result<usize, String> {
-    jit.chunks().iter().map(|chunk| Ok(lines(&chunk.code[..chunk.instruction_bytes], target)?.len())).sum()
-}
-
-/// Nanoseconds a scan of each engine: the medians of the turns, or the means over exactly so many scans.
-fn measure(subjects: &mut [Subject<'_>], scans: Option<u64>) -> Vec<f64> {
-    if let Some(scans) = scans {
-        return subjects.iter_mut().map(|subject| subject.run(scans)).collect();
-    }
-    let least = TURN_TIME.as_secs_f64() * 1e9;
-    let turns: Vec<u64> = subjects
-        .iter_mut()
-        .map(|subject| {
-            let mut scans = 1;
-            while subject.run(scans) * to_f64(scans) < least / 2.0 && scans < MOST_SCANS {
-                scans *= 2;
-            }
-            scans
-        })
-        .collect();
-    let mut measured = vec![Vec::with_capacity(TURNS); subjects.len()];
-    for _ in 0..TURNS {
-        for ((subject, scans), measured) in subjects.iter_mut().zip(&turns).zip(&mut measured) {
-            measured.push(subject.run(*scans));
+    match compiler::compile(engine, lowered, optimised, patience)? {
+        compiler::Outcome::Missing => {
+            row.missing = true;
+            Ok((row, None))
+        }
+        compiler::Outcome::TooSlow(after) => {
+            row.stopped_after_ms = Some(after.as_secs_f64() * 1e3);
+            Ok((row, None))
+        }
+        compiler::Outcome::Compiled(compiled) => {
+            row.compile_ms = Some(compiled.compile.as_secs_f64() * 1e3);
+            row.code_bytes = Some(compiled.code_bytes);
+            row.instructions = compiled.instructions();
+            Ok((row, Some(Subject::compiled(compiled)?)))
         }
     }
-    measured
-        .into_iter()
-        .map(|mut measured| {
-            measured.sort_by(f64::total_cmp);
-            measured[TURNS / 2]
-        })
-        .collect()
+}
+
+/// Runs all engines for some scans from the start.
+///
+/// # Errors
+/// When one leaves another image than the first.
+fn compare(program: &Program, rows: &[Row], subjects: &[(usize, Subject<'_>)]) -> Result<(), Failure> {
+    let mut expected: Option<(&str, Vec<u8>)> = None;
+    for (row, subject) in subjects {
+        let image = subject.image_after(program, COMPARED_SCANS)?;
+        let name = rows[*row].engine;
+        match &expected {
+            None => expected = Some((name, image)),
+            Some((first, expected)) => {
+                let differs = |slot: &&crate::logic::Slot| slot.read(&image) != slot.read(expected);
+                if let Some(slot) = program.layout.slots().iter().find(differs) {
+                    let message = format!(
+                        "{}: after {COMPARED_SCANS} scans `{}` is not the same by {first} and by {name}",
+                        program.name, slot.name
+                    );
+                    return Err(Failure::new(Code::EnginesDiffer, message));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Nanoseconds a scan of each engine, with its row: the medians of the turns, or the means over exactly so many scans.
+fn take_turns(subjects: &mut [(usize, Subject<'_>)], scans: Option<u64>) -> Result<Vec<(usize, f64)>, Failure> {
+    if let Some(scans) = scans {
+        return subjects.iter_mut().map(|(row, subject)| Ok((*row, subject.run(scans)?))).collect();
+    }
+    let least = TURN_TIME.as_secs_f64() * 1e9;
+    let mut turns = Vec::new();
+    for (_, subject) in subjects.iter_mut() {
+        let mut scans = 1;
+        while subject.run(scans)? * to_f64(scans) < least / 2.0 && scans < MOST_SCANS {
+            scans *= 2;
+        }
+        turns.push(scans);
+    }
+    let mut measured = vec![Vec::with_capacity(TURNS); subjects.len()];
+    for _ in 0..TURNS {
+        for (((_, subject), scans), measured) in subjects.iter_mut().zip(&turns).zip(&mut measured) {
+            measured.push(subject.run(*scans)?);
+        }
+    }
+    let median = |mut measured: Vec<f64>| {
+        measured.sort_by(f64::total_cmp);
+        measured[TURNS / 2]
+    };
+    Ok(subjects.iter().zip(measured).map(|((row, _), measured)| (*row, median(measured))).collect())
 }
 
 /// A count for people to read.

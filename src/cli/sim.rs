@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let assertions = (arguments.many.assertions.iter())
         .map(|text| {
             let holds = assertion::assert(&mut program, text)
-                .map_err(|(source, problems)| Failure::diagnostics(&source, &problems))?;
+                .map_err(|refused| Failure::diagnostics(&refused.0, &refused.1))?;
             Ok(lanes::Assertion { text: text.clone(), holds })
         })
         .collect::<Result<Vec<_>, Failure>>()?;

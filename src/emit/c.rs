@@ -5,6 +5,7 @@
 //! their names. No recursion, no dynamic memory, no library, and nothing that C leaves undefined, whatever the data.
 
 mod body;
+mod equations;
 mod expression;
 mod frame;
 mod helper;
@@ -22,6 +23,7 @@ use crate::interface::Interface;
 use crate::logic::{Program, verify};
 use crate::source::Span;
 use body::{Body, Places};
+pub use equations::equations;
 use library::Library;
 
 /// A verified program as C.

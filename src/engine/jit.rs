@@ -38,6 +38,8 @@ fn host() -> Result<Target, CompileError> {
 pub struct Jit {
     /// Each task: when it is due, and its chunks.
     tasks: Vec<(Turn, Range<usize>)>,
+    /// Whether all tasks are due in every scan.
+    always: bool,
     chunks: Vec<Chunk>,
     code: Code,
 }
@@ -69,7 +71,8 @@ impl Jit {
                 (Turn::of(&program.tasks[task], &program.layout), before(sections.start)..before(sections.end))
             })
             .collect();
-        Self { tasks, chunks, code }
+        let always = program.tasks.iter().all(|task| task.interval.is_none());
+        Self { tasks, always, chunks, code }
     }
 
     /// Bytes of machine code, padding between chunks not counted.
@@ -85,6 +88,9 @@ impl Jit {
 
 impl Scan for Jit {
     fn scan(&mut self, image: &mut [u8], now: i64) {
+        if self.always {
+            return self.code.run_all(image, now);
+        }
         for (turn, chunks) in &self.tasks {
             if turn.take(image, now) {
                 self.code.run(chunks.clone(), image, now);

@@ -28,11 +28,11 @@ const HOLDS: &str = "holds";
 ///
 /// # Errors
 /// What is wrong with it, with the text that the places are in.
-pub fn assert(program: &mut Program, expression: &str) -> Result<SlotId, (Source, Vec<Diagnostic>)> {
+pub fn assert(program: &mut Program, expression: &str) -> Result<SlotId, Box<(Source, Vec<Diagnostic>)>> {
     let text = format!("program assertion\noutput {HOLDS}\nrung\n  {{{expression}}} ({HOLDS})\n");
     let source = Source::new("--assert", text);
     let result = small_program(&source, &program.layout);
-    result.and_then(|small| splice(program, &small)).map_err(|diagnostics| (source, diagnostics))
+    result.and_then(|small| splice(program, &small)).map_err(|diagnostics| Box::new((source, diagnostics)))
 }
 
 /// The program of a single rung.
@@ -246,7 +246,8 @@ mod tests {
     fn holds(expression: &str) -> Vec<bool> {
         let mut program = program();
         let plain = program.layout.size();
-        let slot = assert(&mut program, expression).unwrap_or_else(|(source, problems)| {
+        let slot = assert(&mut program, expression).unwrap_or_else(|refused| {
+            let (source, problems) = *refused;
             panic!("{}", diagnostic::render(&source, &problems));
         });
         assert_eq!(verify(&program), Ok(()));
@@ -294,7 +295,7 @@ mod tests {
             ("", "error[R"),
             ("a AND", "error[R"),
         ] {
-            let (source, problems) = assert(&mut program(), expression).expect_err(expression);
+            let (source, problems) = *assert(&mut program(), expression).expect_err(expression);
             let text = diagnostic::render(&source, &problems);
             assert!(text.contains(problem), "{expression}: {text}");
         }

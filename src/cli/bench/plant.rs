@@ -17,15 +17,30 @@ pub(super) struct Plant<'a> {
 }
 
 /// Time from one scan to the next, in nanoseconds.
-const CYCLE: i64 = 1_000_000;
+pub(super) const CYCLE: i64 = 1_000_000;
 /// Scans between two changes of the inputs, so that changing them costs next to nothing beside the scans.
-const SCANS_PER_CHANGE: u64 = 16;
+pub(super) const SCANS_PER_CHANGE: u64 = 16;
 
 impl<'a> Plant<'a> {
     pub(super) fn new(program: &'a Program) -> Self {
         let slots = program.layout.slots().iter();
         let inputs = slots.filter(|slot| slot.area == Area::Input && slot.ty == Elementary::Bool).collect();
         Self { image: program.layout.initial_image(), inputs, now: 0, random: 0x9E37_79B9_7F4A_7C15 }
+    }
+
+    /// The image as it is.
+    pub(super) fn image(&self) -> &[u8] {
+        &self.image
+    }
+
+    /// What `harness.c`, which does the same as this, takes first.
+    pub(super) fn start(&self) -> Vec<u8> {
+        let count = |count: usize| u32::try_from(count).unwrap_or(u32::MAX).to_ne_bytes();
+        let mut start = count(self.image.len()).to_vec();
+        start.extend(&self.image);
+        start.extend(count(self.inputs.len()));
+        self.inputs.iter().for_each(|slot| start.extend(slot.offset.to_ne_bytes()));
+        start
     }
 
     fn next_random(&mut self) -> u64 {
