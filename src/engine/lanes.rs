@@ -99,7 +99,7 @@ impl Lanes {
         }
         let unfolded = recognises.then(|| unfold(program));
         let plan = Plan::of(unfolded.as_ref().unwrap_or(program), recognises);
-        if plan.words.max(plan.stamps.len()) > MOST_WORDS {
+        if plan.words.max(plan.stamp_stride() * epoch::KINDS) > MOST_WORDS {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;

@@ -281,7 +281,7 @@ impl Stamps {
         let (mut less, mut same) = (Word::ZEROS, Word::ONES);
         for (bit, other_bit) in number.into_iter().zip(other_number).rev() {
             less |= same & other_bit & !bit;
-            same = same & (bit & other_bit | !(bit | other_bit));
+            same &= bit & other_bit | !(bit | other_bit);
         }
         other_any & (!any | less | same)
     }
