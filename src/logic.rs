@@ -90,6 +90,12 @@ impl Program {
         start..self.tasks[task].end as usize
     }
 
+    /// The task that an instruction belongs to.
+    pub fn task_of(&self, instruction: usize) -> usize {
+        let section = self.sections.partition_point(|section| section.end as usize <= instruction);
+        self.tasks.partition_point(|task| task.end as usize <= section)
+    }
+
     /// The chunks, each as a range of sections.
     pub fn chunks(&self) -> Vec<std::ops::Range<usize>> {
         let mut starts: Vec<usize> =

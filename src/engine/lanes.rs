@@ -4,7 +4,7 @@
 //! else is,
 //! in general, a column of as many values (`columns`). What timers keep needs neither: it is recognised by the flow
 //! of
-//! values, and only *when* it was set is kept (`recognise` has the proof, `track` and `history` the means).
+//! values, and only *when* it was set is kept (`recognise` has the proof, `track`, `stamps` and `history` the means).
 //! Every lane computes exactly what a scalar engine does: `now` is one for all lanes, nothing is quantised, and what
 //! cannot be told in this way is refused ([`Refused`]), never computed otherwise.
 //!
@@ -12,9 +12,11 @@
 
 mod columns;
 mod compile;
+mod epoch;
 mod history;
 mod plan;
 mod recognise;
+mod stamps;
 mod track;
 mod unfold;
 mod word;
@@ -22,7 +24,7 @@ mod word;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::engine) use compile::Code;
+pub(in crate::engine) use compile::{Code, Through};
 pub(in crate::engine) use word::{VECTORS, Word};
 
 use super::clif::CompileError;
@@ -57,13 +59,11 @@ pub struct Lanes {
     layout: Layout,
     plan: Plan,
     segments: Segments,
-    /// The first segment that sums up a class.
-    sums: usize,
+    /// The first of those of an epoch.
+    of_epoch: usize,
     /// By task: when it is due, over an image of nothing but that, and where there.
     turns: Vec<Turn>,
     dues: Layout,
-    /// Whether every task runs in every round.
-    all_run: bool,
 }
 
 /// Up to [`LANES`] plants: all that they hold.
@@ -86,11 +86,12 @@ impl Lanes {
     /// When there is no back end for this machine, or none for its vectors; when the program is too large, or looks at
     /// when its own tasks are due; or when memory is refused.
     pub fn compile(program: &Program) -> Result<Self, CompileError> {
-        Self::compile_as(program, true)
+        Self::compile_as(program, true, true)
     }
 
-    /// The same; `recognises` is off where all is to take the general path, for tests.
-    fn compile_as(program: &Program, recognises: bool) -> Result<Self, CompileError> {
+    /// The same, for tests: `recognises` is off where all is to take the general path, and `wide` where vectors are to be
+    /// Cranelift's.
+    fn compile_as(program: &Program, recognises: bool, wide: bool) -> Result<Self, CompileError> {
         debug_assert_eq!(verify(program), Ok(()), "engines take verified programs only");
         let refused = |reason: String| CompileError::Chunk { sections: 0..program.sections.len(), reason };
         if touches_turns(program) {
@@ -98,17 +99,14 @@ impl Lanes {
         }
         let unfolded = recognises.then(|| unfold(program));
         let plan = Plan::of(unfolded.as_ref().unwrap_or(program), recognises);
-        if plan.words.max(plan.row_words) > MOST_WORDS {
+        if plan.words.max(plan.stamp_stride() * epoch::KINDS) > MOST_WORDS {
             return Err(refused(format!("it has {} BOOLs, and at most {MOST_WORDS} can be reached", plan.words)));
         }
         let isa = host_isa()?;
-        let code = compile::compile(&plan, &*isa)?;
+        let (code, of_epoch) = compile::compile(&plan, &*isa, wide)?;
         let segments = Segments::install(&code).map_err(CompileError::Memory)?;
-        // Those of the classes are behind those of the pieces.
-        let sums = code.len() - plan.classes.len();
         let (turns, dues) = turns(program);
-        let all_run = program.tasks.iter().all(|task| task.interval.is_none());
-        Ok(Self { layout: program.layout.clone(), plan, segments, sums, turns, dues, all_run })
+        Ok(Self { layout: program.layout.clone(), plan, segments, of_epoch, turns, dues })
     }
 
     /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond
@@ -151,15 +149,15 @@ impl Lanes {
             return Err(Refused);
         }
         let scan = history.begin(now);
-        let sum_up = |class: usize, to: &mut [Word], rows: &mut [Word]| {
-            let count = self.plan.classes[class].tracks.len();
-            self.segments.run(self.sums + class, to, rows, [count, VECTORS]);
+        let run = |segment: usize, common: &mut [Word], stamps: &mut [Word], count: usize| {
+            self.segments.run(self.of_epoch + segment, common, stamps, [count, VECTORS]);
         };
-        tracks.begin(&self.plan, history, words, self.all_run, sum_up);
-        let row = tracks.row(scan);
+        tracks.begin(&self.plan, history, words, &run);
         let mut segment = 0;
-        for (turn, pieces) in self.turns.iter().zip(&self.plan.tasks) {
+        for (task, (turn, pieces)) in self.turns.iter().zip(&self.plan.tasks).enumerate() {
             let runs = turn.take(dues, now);
+            tracks.note_run(&self.plan, task, scan, runs);
+            let row = tracks.stamps.row(scan);
             for piece in pieces {
                 match piece {
                     Piece::Segment(_) => {
@@ -187,7 +185,7 @@ impl Lanes {
         let bits = match self.plan.homes[slot.index()] {
             Home::Word(word) => u64::from(group.words[word as usize].get(lane)),
             Home::Column(column) => group.columns.get(column, lane),
-            Home::Tracked(index) => group.tracks.get(&self.plan, &group.history, index, lane),
+            Home::Tracked(index) => group.tracks.get(&self.plan, &group.history, &group.words, (index, lane)),
             Home::Due(task) => self.due(group, task).bits(),
         };
         Value::from_bits(ty, bits)
@@ -207,7 +205,7 @@ impl Lanes {
             Home::Word(word) => group.words[word as usize].set(lane, value.is_true()),
             Home::Column(column) => group.columns.set(column, lane, value.bits()),
             Home::Tracked(_) | Home::Due(_) if self.get(group, lane, slot) == value => {}
-            Home::Tracked(index) if group.tracks.set(&self.plan, index, lane, value.bits()) => {}
+            Home::Tracked(index) if group.tracks.set(&self.plan, &mut group.words, (index, lane), value.bits()) => {}
             Home::Tracked(_) | Home::Due(_) => return Err(Refused),
         }
         Ok(())

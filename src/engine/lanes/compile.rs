@@ -1,4 +1,4 @@
-//! A segment to one Cranelift function on 128-bit vectors, one bit a lane; and the sums of an epoch to one for a class.
+//! A segment to one function, on a bit for each lane: by Cranelift on 128-bit vectors, or [`wide`] on 256-bit ones.
 //!
 //! A function is a loop over the vectors of a word: all of a segment for the first, then for the next.
 //!
@@ -7,12 +7,11 @@
 //! than once passes through a block of its own, so that loads below it still can.
 //!
 //! ```text
-//! extern "C" fn(words: *mut Word, row: *mut Word, vectors: i64)
+//! extern "C" fn(words: *mut Word, row: *mut Word, turns: i64)
 //! ```
 
-mod sums;
-
-use std::collections::HashMap;
+mod fold;
+mod wide;
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::IntCC;
@@ -22,14 +21,27 @@ use cranelift_codegen::ir::{
 use cranelift_codegen::isa::{CallConv, TargetIsa};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 
-use super::plan::{Bit, BitOp, FALSE_WORD, Piece, Plan, TRUE_WORD};
-use super::track::ROWS;
+use super::epoch;
+use super::plan::{BitOp, Cell, Piece, Plan, TRUE_WORD};
 use super::word::Word;
 use crate::engine::clif::{self, CompileError};
 use crate::parallel;
+use fold::{Instruction, Operand, fold};
+
+/// Bytes of a line of the cache, and of a fetch of instructions.
+const LINE: u32 = 64;
 
 /// What holds a vector of a word.
 const VECTOR: Type = types::I8X16;
+
+/// What a function does with its two pointers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::engine) struct Through {
+    /// How many words it may reach from each.
+    pub(in crate::engine) reach: [usize; 2],
+    /// Whether each is moved on by a turn. What one that is not points to has the same in all vectors.
+    pub(in crate::engine) moves: [bool; 2],
+}
 
 /// The code of a segment.
 #[derive(Debug)]
@@ -38,45 +50,55 @@ pub(in crate::engine) struct Code {
     pub(in crate::engine) bytes: Vec<u8>,
     /// What its first byte must be aligned to, a power of two.
     pub(in crate::engine) alignment: u32,
-    /// How many words it may reach from each of its pointers.
-    pub(in crate::engine) reach: [usize; 2],
+    /// What it may reach from its pointers.
+    pub(in crate::engine) through: Through,
+    /// Vectors of a word that a turn goes through; a word has some such turns.
+    pub(in crate::engine) vectors: usize,
 }
 
-/// The code of a plan's segments, in order, and behind them that of the sums of each class, made on all cores; it does
-/// not depend on how many there are.
+/// The code of a plan's segments, in order, and behind them that of the segments of an [epoch], and where those begin;
+/// made on all cores, and it does not depend on how many there are. It may be `wide` where this machine
+/// [has](wide::is_there) such vectors.
 ///
 /// # Errors
 /// That of the first that has one: when Cranelift refuses it.
-pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa) -> Result<Vec<Code>, CompileError> {
+pub(super) fn compile(plan: &Plan, isa: &dyn TargetIsa, wide: bool) -> Result<(Vec<Code>, usize), CompileError> {
+    let of_epoch = if plan.stamps.is_empty() { Vec::new() } else { epoch::segments(plan.stamp_stride()) };
     let pieces = plan.tasks.iter().flatten();
-    let segments: Vec<&[BitOp]> = pieces
-        .filter_map(|piece| match piece {
-            Piece::Segment(ops) => Some(ops.as_slice()),
-            Piece::Steps(_) => None,
-        })
-        .collect();
+    let segments = pieces.filter_map(|piece| match piece {
+        Piece::Segment(ops) => Some(ops),
+        Piece::Steps(_) => None,
+    });
+    let mut segments: Vec<&Vec<BitOp>> = segments.collect();
+    let first = segments.len();
+    segments.extend(&of_epoch);
     let start = || (Context::new(), FunctionBuilderContext::new());
-    let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| match segments.get(index) {
-        Some(ops) => {
-            let reach = [plan.words, plan.row_words];
-            function(index, isa, memory, reach, |builder, pointers| segment(ops, builder, pointers))
-        }
-        None => {
-            let class = &plan.classes[index - segments.len()];
-            let (length, last_row) = (class.tracks.len(), plan.row_words * (ROWS - 1));
-            let reach = [(class.sums() - 1) * length + 1, last_row + class.row + (class.bits - 1) * length + 1];
-            function(index, isa, memory, reach, |builder, pointers| sums::sums(plan, class, builder, pointers))
+    let wide = wide && wide::is_there();
+    let work = |memory: &mut (Context, FunctionBuilderContext), index: usize| {
+        let instructions = fold(segments[index]);
+        let through = if index < first {
+            Through { reach: [plan.words, plan.stamps.len()], moves: [true, true] }
+        } else {
+            let last = (epoch::KINDS - 1) * plan.stamp_stride() + 1;
+            Through { reach: [epoch::COMMON, last], moves: [false, true] }
+        };
+        match wide.then(|| wide::assemble(&instructions, through.moves)).flatten() {
+            Some(bytes) => Ok(Code { bytes, alignment: LINE, through, vectors: wide::VECTORS }),
+            None => {
+                function(index, isa, memory, through, |builder, pointers| segment(&instructions, builder, pointers))
+            }
         }
     };
-    parallel::each(segments.len() + plan.classes.len(), start, work).into_iter().collect()
+    let code: Result<Vec<Code>, CompileError> = parallel::each(segments.len(), start, work).into_iter().collect();
+    Ok((code?, first))
 }
 
-/// Makes a function of two pointers and of how many vectors they are to be moved on by: a loop over its body.
+/// Makes a function of two pointers and of how many turns to make: a loop over its body.
 fn function(
     index: usize,
     isa: &dyn TargetIsa,
     (context, builder_context): &mut (Context, FunctionBuilderContext),
-    reach: [usize; 2],
+    through: Through,
     body: impl FnOnce(FunctionBuilder<'_>, [Value; 2]) -> FunctionBuilder<'_>,
 ) -> Result<Code, CompileError> {
     context.clear();
@@ -97,7 +119,9 @@ fn function(
         [isa.pointer_type(), isa.pointer_type(), types::I64].map(|ty| builder.append_block_param(turn, ty));
     builder.switch_to_block(turn);
     let mut builder = body(builder, [words, row]);
-    let [words, row] = [words, row].map(|pointer| builder.ins().iadd_imm_s(pointer, i64::from(VECTOR.bytes())));
+    let step = |moves: bool| if moves { i64::from(VECTOR.bytes()) } else { 0 };
+    let [words, row] = [(words, through.moves[0]), (row, through.moves[1])]
+        .map(|(pointer, moves)| builder.ins().iadd_imm_s(pointer, step(moves)));
     let left = builder.ins().iadd_imm_s(left, -1);
     let done = builder.create_block();
     let more = builder.ins().icmp_imm_s(IntCC::NotEqual, left, 0);
@@ -113,75 +137,69 @@ fn function(
         return Err(refused("the code refers to something outside of itself".to_owned()));
     }
     let alignment = isa.function_alignment().minimum.max(compiled.buffer.alignment);
-    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment, reach })
+    Ok(Code { bytes: compiled.code_buffer().to_vec(), alignment, through, vectors: 1 })
 }
 
 /// Fills a function with a segment.
-fn segment<'f>(ops: &[BitOp], builder: FunctionBuilder<'f>, [words, row]: [Value; 2]) -> FunctionBuilder<'f> {
-    let mut uses = vec![0; ops.len()];
-    ops.iter().flat_map(operands).for_each(|operand| uses[operand as usize] += 1);
-    let held = vec![None; ops.len()];
-    let mut lowering = Lowering { ops, builder, words, row, uses, held, pending: HashMap::new() };
-    for index in 0..ops.len() {
-        lowering.op(index);
+fn segment<'f>(
+    instructions: &[Instruction],
+    builder: FunctionBuilder<'f>,
+    [words, row]: [Value; 2],
+) -> FunctionBuilder<'f> {
+    let mut uses = vec![0; instructions.len()];
+    instructions.iter().flat_map(Instruction::made).for_each(|made| uses[made as usize] += 1);
+    let mut lowering = Lowering { builder, words, row, made: vec![None; instructions.len()] };
+    for (index, instruction) in instructions.iter().enumerate() {
+        let value = lowering.instruction(*instruction);
+        lowering.made[index] = if uses[index] > 1 { value.map(|value| lowering.settled(value)) } else { value };
     }
     lowering.builder
 }
 
-/// The operands of an operation.
-fn operands(op: &BitOp) -> impl Iterator<Item = u32> + use<> {
-    let operands = match *op {
-        BitOp::Load(_) | BitOp::Store(_, Bit::Constant(_)) | BitOp::Note(_, Bit::Constant(_)) => [None, None],
-        BitOp::Not(a) | BitOp::Store(_, Bit::Made(a)) | BitOp::Note(_, Bit::Made(a)) => [Some(a), None],
-        BitOp::And(a, b) | BitOp::Or(a, b) | BitOp::Xor(a, b) => [Some(a), Some(b)],
-    };
-    operands.into_iter().flatten()
-}
-
-struct Lowering<'a, 'f> {
-    ops: &'a [BitOp],
+struct Lowering<'f> {
     builder: FunctionBuilder<'f>,
     words: Value,
     row: Value,
-    /// By operation: uses that are still to come.
-    uses: Vec<u32>,
-    held: Vec<Option<Value>>,
-    /// Loads of a word since it was last stored.
-    pending: HashMap<u32, Vec<u32>>,
+    /// By instruction: what it made.
+    made: Vec<Option<Value>>,
 }
 
-impl Lowering<'_, '_> {
-    fn op(&mut self, index: usize) {
-        let op = self.ops[index];
-        let id = u32::try_from(index).unwrap_or(u32::MAX);
-        let value = match op {
-            BitOp::Store(word, bit) => {
-                let value = self.bit(bit);
-                self.make_pending(word);
-                self.builder.ins().store(MemFlagsData::trusted(), value, self.words, way(word));
-                return;
+impl Lowering<'_> {
+    fn instruction(&mut self, instruction: Instruction) -> Option<Value> {
+        let value = match instruction {
+            Instruction::Store(cell, value) => {
+                let value = self.operand(value);
+                let (pointer, way) = self.address(cell);
+                self.builder.ins().store(MemFlagsData::trusted(), value, pointer, way);
+                return None;
             }
-            BitOp::Note(word, bit) => {
-                let value = self.bit(bit);
-                self.builder.ins().store(MemFlagsData::trusted(), value, self.row, way(word));
-                return;
+            Instruction::Load(cell) => self.load(cell),
+            Instruction::Not(a) => {
+                let a = self.operand(a);
+                let ones = self.load(Cell::Word(TRUE_WORD));
+                self.builder.ins().bxor(a, ones)
             }
-            _ if self.uses[index] == 0 => return,
-            // Made where they are used.
-            BitOp::Load(word) => return self.pending.entry(word).or_default().push(id),
-            BitOp::Not(_) if self.is_late_not(id) => return,
-            BitOp::Not(a) => self.inverted(a),
-            BitOp::And(a, b) => self.and(a, b),
-            BitOp::Or(a, b) => {
-                let (a, b) = self.both(a, b);
+            Instruction::And(a, b) => {
+                let (a, b) = (self.operand(a), self.operand(b));
+                self.builder.ins().band(a, b)
+            }
+            // One instruction, of which what is kept may be a load.
+            Instruction::AndNot(kept, inverted) => {
+                let inverted = self.operand(inverted);
+                let inverted = self.builder.ins().bnot(inverted);
+                let kept = self.operand(kept);
+                self.builder.ins().band(kept, inverted)
+            }
+            Instruction::Or(a, b) => {
+                let (a, b) = (self.operand(a), self.operand(b));
                 self.builder.ins().bor(a, b)
             }
-            BitOp::Xor(a, b) => {
-                let (a, b) = self.both(a, b);
+            Instruction::Xor(a, b) => {
+                let (a, b) = (self.operand(a), self.operand(b));
                 self.builder.ins().bxor(a, b)
             }
         };
-        self.held[index] = Some(if self.uses[index] > 1 { self.settled(value) } else { value });
+        Some(value)
     }
 
     /// See [`clif`](crate::engine::clif): the jump to the block that follows makes no code.
@@ -194,89 +212,26 @@ impl Lowering<'_, '_> {
         settled
     }
 
-    fn load(&mut self, word: u32) -> Value {
-        self.builder.ins().load(VECTOR, MemFlagsData::trusted(), self.words, way(word))
-    }
-
-    fn bit(&mut self, bit: Bit) -> Value {
-        match bit {
-            Bit::Constant(value) => self.load(if value { TRUE_WORD } else { FALSE_WORD }),
-            Bit::Made(id) => self.value(id),
+    fn address(&self, cell: Cell) -> (Value, i32) {
+        match cell {
+            Cell::Word(word) => (self.words, way(word)),
+            Cell::Row(stamp) => (self.row, way(stamp)),
         }
     }
 
-    /// Uses a value. A load is made anew for each use, which costs nothing where it is part of an instruction.
-    fn value(&mut self, id: u32) -> Value {
-        let index = id as usize;
-        self.uses[index] = self.uses[index].saturating_sub(1);
-        match (self.held[index], self.ops[index]) {
-            (Some(value), _) => value,
-            (None, BitOp::Load(word)) => self.load(word),
-            (None, BitOp::Not(a)) => self.inverted(a),
-            (None, BitOp::And(..) | BitOp::Or(..) | BitOp::Xor(..) | BitOp::Store(..) | BitOp::Note(..)) => {
-                unreachable!("operands are made before, and only the above are late")
-            }
-        }
+    fn load(&mut self, cell: Cell) -> Value {
+        let (pointer, way) = self.address(cell);
+        self.builder.ins().load(VECTOR, MemFlagsData::trusted(), pointer, way)
     }
 
-    /// Whether a value will be loaded where it is used.
-    fn is_late_load(&self, id: u32) -> bool {
-        self.held[id as usize].is_none() && matches!(self.ops[id as usize], BitOp::Load(_))
-    }
-
-    /// Whether a NOT is left to its only use. Not so that of a NOT, or a long chain of them would nest as deep.
-    fn is_late_not(&self, id: u32) -> bool {
-        match self.ops[id as usize] {
-            BitOp::Not(inner) => self.uses[id as usize] == 1 && !matches!(self.ops[inner as usize], BitOp::Not(_)),
-            _ => false,
-        }
-    }
-
-    /// What a NOT that was left to its use inverts.
-    fn late_not(&self, id: u32) -> Option<u32> {
-        match self.ops[id as usize] {
-            BitOp::Not(inner) if self.held[id as usize].is_none() && self.is_late_not(id) => Some(inner),
-            _ => None,
-        }
-    }
-
-    fn inverted(&mut self, a: u32) -> Value {
-        let a = self.value(a);
-        let ones = self.load(TRUE_WORD);
-        self.builder.ins().bxor(a, ones)
-    }
-
-    /// Two values, a load behind the other, where it becomes part of the instruction.
-    fn both(&mut self, a: u32, b: u32) -> (Value, Value) {
-        let (first, second) = if self.is_late_load(a) && !self.is_late_load(b) { (b, a) } else { (a, b) };
-        let first = self.value(first);
-        (first, self.value(second))
-    }
-
-    /// An AND; x AND NOT y is one instruction, of which x may be a load.
-    fn and(&mut self, a: u32, b: u32) -> Value {
-        let (kept, inverted) = match (self.late_not(a), self.late_not(b)) {
-            (Some(inner), None) => (b, inner),
-            (_, Some(inner)) => (a, inner),
-            (None, None) => {
-                let (a, b) = self.both(a, b);
-                return self.builder.ins().band(a, b);
-            }
-        };
-        let inner = self.value(inverted);
-        let inner = self.builder.ins().bnot(inner);
-        let kept = self.value(kept);
-        self.builder.ins().band(kept, inner)
-    }
-
-    /// Makes the loads of a word that is about to be stored.
-    fn make_pending(&mut self, word: u32) {
-        for load in self.pending.remove(&word).unwrap_or_default() {
-            let index = load as usize;
-            if self.uses[index] > 0 && self.held[index].is_none() {
-                let value = self.load(word);
-                self.held[index] = Some(value);
-            }
+    /// A load is made anew for each use, which costs nothing where it is part of an instruction.
+    fn operand(&mut self, operand: Operand) -> Value {
+        match operand {
+            Operand::Memory(cell) => self.load(cell),
+            Operand::Made(index) => match self.made[index as usize] {
+                Some(value) => value,
+                None => unreachable!("operands are made before"),
+            },
         }
     }
 }

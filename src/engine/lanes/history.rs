@@ -42,6 +42,8 @@ pub(super) struct History {
     ahead: u64,
     /// While steps stay equal and no time comes that is as late as this, each preset goes on by one scan, or stays.
     steady_before: Option<i64>,
+    /// Whether each preset went on with the last scan as was to be foreseen.
+    went_on: bool,
 }
 
 impl History {
@@ -49,7 +51,7 @@ impl History {
     pub(super) fn new(presets: impl Iterator<Item = i64>) -> Self {
         let reach = |preset: i64| Reach { preset, end: 0, start: Some(0), run: 0, goes_on: false };
         let (runs, reaches) = (vec![Run { first: 0, time: 0, step: 0 }], presets.map(reach).collect());
-        Self { runs, last: 0, now: 0, reaches, ahead: 0, steady_before: None }
+        Self { runs, last: 0, now: 0, reaches, ahead: 0, steady_before: None, went_on: false }
     }
 
     /// Whether the next scan may happen at a time: not before the last one.
@@ -69,8 +71,10 @@ impl History {
         let run = self.runs[self.runs.len() - 1];
         if run.step == step && self.last > run.first && self.steady_before.is_some_and(|before| now < before) {
             (self.last, self.now, self.ahead) = (self.last + 1, now, self.ahead + 1);
+            self.went_on = true;
             return self.last;
         }
+        self.went_on = false;
         self.look_at_all(now);
         self.last += 1;
         let end = self.runs.len() - 1;
@@ -134,6 +138,17 @@ impl History {
         if goes_on { end + self.ahead } else { end }
     }
 
+    /// Whether a preset is to reach one scan further with each that comes; else it is to reach as far as now. It does
+    /// as long as every scan [went on](History::went_on) like that.
+    pub(super) fn goes_on(&self, preset: usize) -> bool {
+        self.reaches[preset].goes_on
+    }
+
+    /// Whether every preset reached as far with the last scan as was to be foreseen before it.
+    pub(super) fn went_on(&self) -> bool {
+        self.went_on
+    }
+
     /// The time of a scan that has been.
     pub(super) fn time(&self, scan: u64) -> i64 {
         self.runs[self.runs.partition_point(|run| run.first <= scan) - 1].at(scan)
@@ -157,11 +172,14 @@ mod tests {
         let mut all = vec![0];
         for now in times {
             assert!(history.accepts(*now));
+            let foreseen: Vec<u64> =
+                (0..presets.len()).map(|index| history.reach(index) + u64::from(history.goes_on(index))).collect();
             let scan = history.begin(*now);
             assert_eq!(scan, all.len() as u64);
             for (index, preset) in presets.iter().enumerate() {
                 let long_ago = all.iter().take_while(|time| now - **time >= *preset).count();
                 assert_eq!(history.reach(index), long_ago as u64, "{preset} ns before {now} of {times:?}");
+                assert!(!history.went_on() || history.reach(index) == foreseen[index], "{preset}, {now} of {times:?}");
             }
             all.push(*now);
             assert!((0..).zip(&all).all(|(scan, time)| history.time(scan) == *time), "{times:?}");

@@ -10,10 +10,10 @@
 mod chunk;
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::columns::{Column, Step};
 use super::recognise::{Answer, Due, Leaf, Recognised, Tracked, recognise};
-use super::track::ROW_BITS;
 use crate::elementary::Elementary;
 use crate::logic::{Program, SlotId};
 
@@ -29,19 +29,26 @@ pub(super) enum Bit {
     Made(u32),
 }
 
+/// Where a bit for each lane is in memory.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) enum Cell {
+    /// One of the words.
+    Word(u32),
+    /// In this scan's row, that of a stamp: what [`track`](super::track) foresaw, until the scan sets it.
+    Row(u32),
+}
+
 /// An operation on whole words. Operands are indices of operations before it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum BitOp {
-    /// What a word holds.
-    Load(u32),
+    /// What is in memory.
+    Load(Cell),
     Not(u32),
     And(u32, u32),
     Or(u32, u32),
     Xor(u32, u32),
-    /// Sets a word.
-    Store(u32, Bit),
-    /// Sets a word of this scan's row of codes.
-    Note(u32, Bit),
+    /// Sets what is in memory.
+    Store(Cell, Bit),
 }
 
 /// A part of a chunk.
@@ -66,43 +73,46 @@ pub(super) enum Home {
     Due(usize),
 }
 
-/// A tracked slot and its place.
+/// A tracked slot, and what is kept for it.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Track {
     pub(super) tracked: Tracked,
     pub(super) ty: Elementary,
     pub(super) initial: u64,
-    /// The first of its words in a row, and how far it is to the next. Latches have those of their own index.
-    pub(super) row: usize,
-    pub(super) stride: usize,
+    /// The task that its store belongs to.
+    pub(super) task: usize,
+    /// The words of its code, the lowest bit first; a latch has none.
+    pub(super) codes: Range<u32>,
+    /// Its stamps: those of a latch all tell the same, others have one at most.
+    pub(super) stamps: Vec<usize>,
     /// The codes that stand for a difference, each with the index of its latch.
     pub(super) since: Vec<(usize, usize)>,
 }
 
-/// Tracked slots with codes of as many bits, at least one. In a row stand the lowest bits of all of them, then the
-/// next.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub(super) struct Class {
-    pub(super) bits: usize,
-    /// Which of [`Plan::tracks`].
-    pub(super) tracks: std::ops::Range<usize>,
-    /// The first of its words in a row.
-    pub(super) row: usize,
-}
-
-impl Class {
-    /// Words that sum up a slot's codes: whether there is any, the bits of its row's number, and its bits, of more
-    /// than one.
-    pub(super) fn sums(&self) -> usize {
-        1 + ROW_BITS + if self.bits > 1 { self.bits } else { 0 }
+impl Track {
+    /// Whether it is given `now` or a difference, of which the value depends on the scan.
+    fn is_timed(&self) -> bool {
+        self.tracked.leaves.iter().any(|leaf| match leaf {
+            Leaf::Now | Leaf::Since(_) => true,
+            Leaf::Constant(_) => false,
+        })
     }
 }
 
-/// Questions with one preset, as a range of [`Plan::dues`].
+/// What tells, for each lane, which scan was the last to give a tracked slot anything but what it held.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Stamp {
+    /// The task whose scans do.
+    pub(super) task: usize,
+    /// The word of the lanes in which it was set in this epoch, if any preset is asked about.
+    pub(super) recent: Option<u32>,
+}
+
+/// A preset, with a stamp for each question about it.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Preset {
     pub(super) nanoseconds: i64,
-    pub(super) dues: std::ops::Range<usize>,
+    pub(super) stamps: Range<usize>,
 }
 
 /// See the module.
@@ -110,7 +120,7 @@ pub(super) struct Preset {
 pub(super) struct Plan {
     /// By slot.
     pub(super) homes: Vec<Home>,
-    /// Words in all: two constants, the BOOL slots, the answers, and those that wait between pieces.
+    /// Words in all: two constants, the BOOL slots, codes, what was set lately, and those that wait between pieces.
     pub(super) words: usize,
     /// Columns of values of 1, 2, 4 and 8 bytes.
     pub(super) columns: [usize; 4],
@@ -118,17 +128,11 @@ pub(super) struct Plan {
     pub(super) constants: Vec<(Column, u64)>,
     /// Latches first.
     pub(super) tracks: Vec<Track>,
-    /// Latches are the first class.
-    pub(super) classes: Vec<Class>,
     /// How many of them are latches.
     pub(super) latches: usize,
-    /// Words of a row.
-    pub(super) row_words: usize,
-    /// By answer: the latch. In order of their presets.
-    pub(super) dues: Vec<usize>,
+    /// Those with a preset first, in the order of the presets.
+    pub(super) stamps: Vec<Stamp>,
     pub(super) presets: Vec<Preset>,
-    /// The word of the first answer.
-    pub(super) first_due: u32,
     /// By task: the pieces of its chunks.
     pub(super) tasks: Vec<Vec<Piece>>,
 }
@@ -148,16 +152,7 @@ impl Plan {
         dues.sort_unstable();
         dues.dedup();
         let mut plan = Self::of_slots(program, &recognised);
-        plan.first_due = plan.take_words(dues.len());
-        for (index, due) in dues.iter().enumerate() {
-            match plan.presets.last_mut() {
-                Some(last) if last.nanoseconds == due.preset => last.dues.end = index + 1,
-                _ => plan.presets.push(Preset { nanoseconds: due.preset, dues: index..index + 1 }),
-            }
-            let Home::Tracked(latch) = plan.homes[due.latch.index()] else { unreachable!("latches are tracked") };
-            plan.dues.push(latch);
-        }
-        let word_of: HashMap<Due, u32> = dues.into_iter().zip(plan.first_due..).collect();
+        let stamp_of = plan.take_stamps(&dues);
         let stores: HashMap<usize, usize> = plan.tracks.iter().map(|track| track.tracked.store).zip(0..).collect();
         let chunks = program.chunks();
         let mut store = chunk::Store::new(&plan);
@@ -166,7 +161,7 @@ impl Plan {
                 let sections = program.task_range(task);
                 let first = chunks.partition_point(|chunk| chunk.start < sections.start);
                 let own = chunks[first..].iter().take_while(|chunk| chunk.start < sections.end).cloned();
-                own.flat_map(|chunk| chunk::pieces(program, &plan, &recognised, &word_of, &stores, &mut store, chunk))
+                own.flat_map(|chunk| chunk::pieces(program, &plan, &recognised, &stamp_of, &stores, &mut store, chunk))
                     .collect()
             })
             .collect();
@@ -182,25 +177,24 @@ impl Plan {
             columns: [0; 4],
             constants: Vec::new(),
             tracks: Vec::new(),
-            classes: Vec::new(),
             latches: recognised.tracked.iter().filter(|tracked| tracked.is_latch()).count(),
-            row_words: 0,
-            dues: Vec::new(),
+            stamps: Vec::new(),
             presets: Vec::new(),
-            first_due: 0,
             tasks: Vec::new(),
         };
-        for class in recognised.tracked.chunk_by(|a, b| (a.is_latch(), a.bits()) == (b.is_latch(), b.bits())) {
-            let (bits, first, row) = (class[0].bits(), plan.tracks.len(), plan.row_words);
-            for (tracked, row) in class.iter().zip(row..) {
-                let slot = program.layout.slot(tracked.slot);
-                let (ty, initial, stride) = (slot.ty, slot.initial.bits(), class.len());
-                plan.tracks.push(Track { tracked: tracked.clone(), ty, initial, row, stride, since: Vec::new() });
-            }
-            plan.row_words += bits * class.len();
-            if bits > 0 {
-                plan.classes.push(Class { bits, tracks: first..plan.tracks.len(), row });
-            }
+        for tracked in &recognised.tracked {
+            let slot = program.layout.slot(tracked.slot);
+            let bits = if tracked.is_latch() { 0 } else { tracked.bits() };
+            let first = plan.take_words(bits);
+            plan.tracks.push(Track {
+                tracked: tracked.clone(),
+                ty: slot.ty,
+                initial: slot.initial.bits(),
+                task: program.task_of(tracked.store),
+                codes: first..first + u32::try_from(bits).unwrap_or(u32::MAX),
+                stamps: Vec::new(),
+                since: Vec::new(),
+            });
         }
         let tracked: HashMap<SlotId, usize> = plan.tracks.iter().map(|track| track.tracked.slot).zip(0..).collect();
         for track in &mut plan.tracks {
@@ -230,6 +224,39 @@ impl Plan {
             plan.homes.push(home);
         }
         plan
+    }
+
+    /// From one word of a stamp to its next. An odd number of lines of the cache, in which they so do not contend for the
+    /// same place.
+    pub(super) fn stamp_stride(&self) -> usize {
+        self.stamps.len() | 1
+    }
+
+    /// Gives each question a stamp, and one to every latch without, and to the other tracked slots that need it. Tells the
+    /// stamp of each question.
+    fn take_stamps(&mut self, dues: &[Due]) -> HashMap<Due, usize> {
+        let mut stamp_of = HashMap::new();
+        for due in dues {
+            let Home::Tracked(latch) = self.homes[due.latch.index()] else { unreachable!("latches are tracked") };
+            let stamp = self.stamps.len();
+            match self.presets.last_mut() {
+                Some(last) if last.nanoseconds == due.preset => last.stamps.end = stamp + 1,
+                _ => self.presets.push(Preset { nanoseconds: due.preset, stamps: stamp..stamp + 1 }),
+            }
+            let recent = Some(self.take_words(1));
+            self.stamps.push(Stamp { task: self.tracks[latch].task, recent });
+            self.tracks[latch].stamps.push(stamp);
+            stamp_of.insert(*due, stamp);
+        }
+        for index in 0..self.tracks.len() {
+            let track = &self.tracks[index];
+            let needs = index < self.latches || track.is_timed() && !track.tracked.follows;
+            if needs && track.stamps.is_empty() {
+                self.tracks[index].stamps.push(self.stamps.len());
+                self.stamps.push(Stamp { task: self.tracks[index].task, recent: None });
+            }
+        }
+        stamp_of
     }
 
     /// Words that nothing else has, and the first of them.

@@ -14,10 +14,13 @@
 //! All this is seen from the operations alone, by the uses of values: nothing here may know a block. What is not proven
 //! is left to [`columns`](super::columns), which is always right.
 
+mod together;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::elementary::Elementary;
 use crate::logic::{Area, Binary, Compare, Op, Program, SlotId, ValueId};
+use together::never_together;
 
 /// Operations in the choice that is stored to a tracked slot, at most.
 const MOST_NODES: usize = 64;
@@ -45,8 +48,14 @@ pub(super) struct Tracked {
     pub(super) slot: SlotId,
     /// The one store to it, as an instruction.
     pub(super) store: usize,
-    /// What it can be given, besides what it held: code 1 is the first, code 0 is what it held.
+    /// What it can be given, besides what it held: code 1 is the first, code 0 is a value that is kept for itself.
     pub(super) leaves: Vec<Leaf>,
+    /// Whether it can also be given what it held.
+    pub(super) keeps: bool,
+    /// Whether all it holds can be told from the code alone, from the last run of its task, and from its latches as
+    /// they are: it is given something in every run, and a difference only in lanes in which the latch is not set in
+    /// the same run.
+    pub(super) follows: bool,
 }
 
 impl Tracked {
@@ -84,7 +93,7 @@ pub(super) enum Answer {
 /// What was recognised in a program.
 #[derive(Debug, Default)]
 pub(super) struct Recognised {
-    /// Latches first, then by the bits of their codes; each kind in the order of the slots.
+    /// Latches first; each kind in the order of the slots.
     pub(super) tracked: Vec<Tracked>,
     /// The comparisons that are answered from when a latch was set.
     pub(super) answers: HashMap<ValueId, Answer>,
@@ -100,6 +109,8 @@ struct Choice {
     /// Differences to latches.
     differences: Vec<ValueId>,
     leaves: Vec<Leaf>,
+    /// Whether what the slot held is among them.
+    keeps: bool,
 }
 
 impl Choice {
@@ -140,7 +151,7 @@ pub(super) fn recognise(program: &Program) -> Recognised {
 fn choice(program: &Program, slot: SlotId, store: usize) -> Option<Choice> {
     let op = |value: ValueId| program.instructions[value.index()].op;
     let Op::Store(_, root) = program.instructions[store].op else { return None };
-    let mut found = Choice { store, selects: Vec::new(), differences: Vec::new(), leaves: Vec::new() };
+    let mut found = Choice { store, selects: Vec::new(), differences: Vec::new(), leaves: Vec::new(), keeps: false };
     let mut seen = HashSet::new();
     let mut open = vec![root];
     while let Some(value) = open.pop() {
@@ -156,7 +167,10 @@ fn choice(program: &Program, slot: SlotId, store: usize) -> Option<Choice> {
                 open.extend([b, a]);
                 continue;
             }
-            Op::Load(of) if of == slot => continue,
+            Op::Load(of) if of == slot => {
+                found.keeps = true;
+                continue;
+            }
             Op::Constant(bits) => Leaf::Constant(bits),
             Op::Now => Leaf::Now,
             Op::Binary(Binary::Subtract, ..) => {
@@ -366,13 +380,30 @@ impl Accounts {
             }
         }
         let mut tracked = Vec::new();
-        for (slot, choice) in choices {
-            absorbed.extend(choice.selects);
-            tracked.push(Tracked { slot, store: choice.store, leaves: choice.leaves });
+        for (slot, choice) in &choices {
+            absorbed.extend(&choice.selects);
+            let (leaves, keeps) = (choice.leaves.clone(), choice.keeps);
+            let follows = follows(program, &choices, choice);
+            tracked.push(Tracked { slot: *slot, store: choice.store, leaves, keeps, follows });
         }
-        tracked.sort_by_key(|tracked| (!tracked.is_latch(), tracked.bits()));
+        tracked.sort_by_key(|tracked| !tracked.is_latch());
         Recognised { tracked, answers: self.answers, absorbed }
     }
+}
+
+/// See [`Tracked::follows`].
+fn follows(program: &Program, choices: &BTreeMap<SlotId, Choice>, choice: &Choice) -> bool {
+    let not_with = |latch: &SlotId| {
+        choices.get(latch).is_some_and(|set| {
+            program.task_of(set.store) == program.task_of(choice.store)
+                && never_together(program, (choice.store, Leaf::Since(*latch)), (set.store, Leaf::Now))
+        })
+    };
+    let latches = choice.leaves.iter().filter_map(|leaf| match leaf {
+        Leaf::Since(latch) => Some(latch),
+        Leaf::Constant(_) | Leaf::Now => None,
+    });
+    !choice.keeps && latches.into_iter().all(not_with)
 }
 
 fn id(index: usize) -> ValueId {

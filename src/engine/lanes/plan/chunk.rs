@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
-use super::{Answer, Bit, BitOp, FALSE_WORD, Home, Piece, Plan, Recognised, TRUE_WORD};
+use super::{Answer, Bit, BitOp, Cell, FALSE_WORD, Home, Piece, Plan, Recognised, TRUE_WORD};
 use crate::elementary::Elementary;
 use crate::engine::lanes::columns::{Column, Elements, Place, Step};
 use crate::engine::lanes::recognise::{Due, Leaf};
@@ -86,7 +86,7 @@ pub(super) fn pieces(
     program: &Program,
     plan: &Plan,
     recognised: &Recognised,
-    dues: &HashMap<Due, u32>,
+    dues: &HashMap<Due, usize>,
     stores: &HashMap<usize, usize>,
     store: &mut Store,
     sections: Range<usize>,
@@ -98,6 +98,7 @@ pub(super) fn pieces(
         recognised,
         dues,
         stores,
+        asked: HashMap::new(),
         last_use: HashMap::new(),
         held: HashMap::new(),
         aliases: BTreeMap::new(),
@@ -132,8 +133,10 @@ struct Sorter<'a> {
     program: &'a Program,
     plan: &'a Plan,
     recognised: &'a Recognised,
-    dues: &'a HashMap<Due, u32>,
+    dues: &'a HashMap<Due, usize>,
     store: &'a mut Store,
+    /// The questions of the chunk that are still to come or were answered, by the latch.
+    asked: HashMap<SlotId, Vec<(ValueId, Answer)>>,
     /// The tracked slots, by the instructions that store them.
     stores: &'a HashMap<usize, usize>,
     /// The last instruction that uses a value.
@@ -160,6 +163,9 @@ impl Sorter<'_> {
     fn prepare(&mut self, range: Range<usize>) {
         for index in range {
             let op = self.program.instructions[index].op;
+            if let Some(answer @ Answer::Due { due, .. }) = self.recognised.answers.get(&id(index)) {
+                self.asked.entry(due.latch).or_default().push((id(index), *answer));
+            }
             if self.recognised.absorbed.contains(&id(index)) || self.recognised.answers.contains_key(&id(index)) {
                 continue;
             }
@@ -188,14 +194,10 @@ impl Sorter<'_> {
     fn instruction(&mut self, index: usize, Instruction { ty, op }: Instruction) {
         let id = id(index);
         if let Some(answer) = self.recognised.answers.get(&id) {
-            let bit = match *answer {
-                Answer::Always(value) => Bit::Constant(value),
-                Answer::Due { due, inverted } => {
-                    let bit = self.push(BitOp::Load(self.dues[&due]));
-                    if inverted { self.not(bit) } else { bit }
-                }
-            };
-            return self.hold_bit(id, bit);
+            if !self.held.contains_key(&id) {
+                self.answer_question(id, *answer);
+            }
+            return;
         }
         if let Some(track) = self.stores.get(&index) {
             return self.note(*track, op);
@@ -212,11 +214,11 @@ impl Sorter<'_> {
             Op::Constant(bits) => Bit::Constant(bits != 0),
             Op::Load(slot) => {
                 let word = self.word_of(slot);
-                self.push(BitOp::Load(word))
+                self.load(Cell::Word(word))
             }
             Op::Store(slot, a) => {
                 let (word, a) = (self.word_of(slot), self.bit(a));
-                self.push(BitOp::Store(word, a));
+                self.push(BitOp::Store(Cell::Word(word), a));
                 return;
             }
             Op::Unary(op, a) => {
@@ -342,29 +344,83 @@ impl Sorter<'_> {
         }
     }
 
+    /// Answers a question about a latch, of what was foreseen and what was set since.
+    fn answer_question(&mut self, id: ValueId, answer: Answer) {
+        let bit = match answer {
+            Answer::Always(value) => Bit::Constant(value),
+            Answer::Due { due, inverted } => {
+                let stamp = self.dues[&due];
+                let due = self.load(Cell::Row(row_of(stamp)));
+                let bit = match self.plan.stamps[stamp].recent {
+                    Some(recent) => {
+                        let recent = self.load(Cell::Word(recent));
+                        let still = self.not(recent);
+                        self.and(due, still)
+                    }
+                    None => due,
+                };
+                if inverted { self.not(bit) } else { bit }
+            }
+        };
+        self.hold_bit(id, bit);
+    }
+
     /// Notes which of a tracked slot's choices is taken.
     fn note(&mut self, track: usize, op: Op) {
         let Some(root) = op.operands().next() else { return };
         let track = &self.plan.tracks[track];
-        let mut known = HashMap::new();
-        let code = self.code(track, root, &mut known);
-        for (bit, word) in code.into_iter().zip((track.row..).step_by(track.stride)) {
-            self.push(BitOp::Note(u32::try_from(word).unwrap_or(u32::MAX), bit));
+        // What is asked of a latch is meant of what it holds before.
+        for (id, answer) in self.asked.remove(&track.tracked.slot).unwrap_or_default() {
+            if !self.held.contains_key(&id) {
+                self.answer_question(id, answer);
+            }
+        }
+        if !track.stamps.is_empty() {
+            let held = vec![Bit::Constant(false)];
+            let is_set = self.choice(root, &held, &|_| vec![Bit::Constant(true)], &mut HashMap::new());
+            for stamp in &track.stamps {
+                if let Some(word) = self.plan.stamps[*stamp].recent {
+                    let before = self.load(Cell::Word(word));
+                    let recent = self.or(before, is_set[0]);
+                    self.push(BitOp::Store(Cell::Word(word), recent));
+                }
+                self.push(BitOp::Store(Cell::Row(row_of(*stamp)), is_set[0]));
+            }
+        }
+        if !track.codes.is_empty() {
+            let held: Vec<Bit> = match track.tracked.keeps {
+                true => track.codes.clone().map(|word| self.load(Cell::Word(word))).collect(),
+                false => Vec::new(),
+            };
+            let given = |leaf: Leaf| {
+                let code = track.tracked.code(leaf);
+                (0..track.codes.len()).map(|bit| Bit::Constant(code >> bit & 1 != 0)).collect()
+            };
+            let code = self.choice(root, &held, &given, &mut HashMap::new());
+            for (word, bit) in track.codes.clone().zip(code) {
+                self.push(BitOp::Store(Cell::Word(word), bit));
+            }
         }
     }
 
-    /// The code of what a part of a choice gives, the lowest bit first.
-    fn code(&mut self, track: &super::Track, value: ValueId, known: &mut HashMap<ValueId, Vec<Bit>>) -> Vec<Bit> {
-        if let Some(code) = known.get(&value) {
-            return code.clone();
+    /// What a choice gives, as bits: some for what the slot held, and some for each leaf.
+    fn choice(
+        &mut self,
+        value: ValueId,
+        held: &[Bit],
+        given: &impl Fn(Leaf) -> Vec<Bit>,
+        known: &mut HashMap<ValueId, Vec<Bit>>,
+    ) -> Vec<Bit> {
+        if let Some(bits) = known.get(&value) {
+            return bits.clone();
         }
         let leaf = match self.program.instructions[value.index()].op {
             Op::Select(condition, a, b) => {
-                let (a, b) = (self.code(track, a, known), self.code(track, b, known));
+                let (a, b) = (self.choice(a, held, given, known), self.choice(b, held, given, known));
                 let condition = self.bit(condition);
-                let code: Vec<Bit> = a.into_iter().zip(b).map(|(a, b)| self.select(condition, a, b)).collect();
-                known.insert(value, code.clone());
-                return code;
+                let bits: Vec<Bit> = a.into_iter().zip(b).map(|(a, b)| self.select(condition, a, b)).collect();
+                known.insert(value, bits.clone());
+                return bits;
             }
             Op::Constant(bits) => Some(Leaf::Constant(bits)),
             Op::Now => Some(Leaf::Now),
@@ -384,8 +440,7 @@ impl Sorter<'_> {
             | Op::StoreIndexed(..)
             | Op::CopyArray(..) => None,
         };
-        let code = leaf.map_or(0, |leaf| track.tracked.code(leaf));
-        (0..track.tracked.bits()).map(|bit| Bit::Constant(code >> bit & 1 != 0)).collect()
+        leaf.map_or_else(|| held.to_vec(), given)
     }
 
     // Places.
@@ -422,6 +477,10 @@ impl Sorter<'_> {
 
     // Values in segments.
 
+    fn load(&mut self, cell: Cell) -> Bit {
+        self.push(BitOp::Load(cell))
+    }
+
     fn push(&mut self, op: BitOp) -> Bit {
         self.segment.push(op);
         Bit::Made(u32::try_from(self.segment.len() - 1).unwrap_or(u32::MAX))
@@ -444,7 +503,7 @@ impl Sorter<'_> {
                 if let Some(made) = self.loaded.get(&word) {
                     return Bit::Made(*made);
                 }
-                let bit = self.push(BitOp::Load(word));
+                let bit = self.load(Cell::Word(word));
                 if let Bit::Made(made) = bit {
                     self.loaded.insert(word, made);
                 }
@@ -487,7 +546,7 @@ impl Sorter<'_> {
             let needed = self.last_use.get(&id).is_some_and(|last| *last >= self.at);
             if let (true, Some(Held::Bit(bit @ Bit::Made(_)))) = (needed, self.held.get(&id).copied()) {
                 let word = self.wait();
-                self.segment.push(BitOp::Store(word, bit));
+                self.segment.push(BitOp::Store(Cell::Word(word), bit));
                 self.held.insert(id, Held::Waiting(word));
             }
         }
@@ -651,6 +710,10 @@ impl Sorter<'_> {
             }
         }
     }
+}
+
+fn row_of(stamp: usize) -> u32 {
+    u32::try_from(stamp).unwrap_or(u32::MAX)
 }
 
 fn id(index: usize) -> ValueId {
