@@ -1,6 +1,8 @@
 //! How long the passes and the compiler take, and how large the code is.
 #![expect(clippy::print_stderr, reason = "sizes are reported beside the times")]
 
+#[path = "support/edit.rs"]
+mod edit;
 #[path = "support/workload.rs"]
 mod workload;
 
@@ -8,10 +10,11 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use edit::edited_at;
 use rung::engine::clif::Chunk;
 use rung::engine::disassemble;
 use rung::engine::jit::{Edited, Jit, host_isa};
-use rung::logic::{Binary, Op, Program};
+use rung::logic::Program;
 use rung::opt;
 use workload::workload;
 
@@ -80,18 +83,6 @@ fn edits(criterion: &mut Criterion) {
         });
     });
     group.finish();
-}
-
-/// The same program with another operation in one section.
-fn edited_at(mut program: Program, section: usize) -> Program {
-    let range = program.section_range(section);
-    let joins = |op: &Op| matches!(op, Op::Binary(Binary::And, ..));
-    let join = program.instructions[range].iter_mut().find(|instruction| joins(&instruction.op));
-    let join = join.expect("contacts in series");
-    if let Op::Binary(_, a, b) = join.op {
-        join.op = Op::Binary(Binary::Or, a, b);
-    }
-    program
 }
 
 criterion_group!(benches, compiles, edits);

@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// Reading a large drawing makes a million small objects: a third of its time went to the system's allocator and to page
-/// faults. A program that embeds the library keeps its own.
+/// Reading a large drawing makes a million small objects, for which this one takes less time and far fewer page faults than
+/// the system's. A program that embeds the library keeps its own.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

@@ -43,7 +43,7 @@ fn every_engine_and_compiler_has_a_row_and_machine_code_its_instructions() {
 
 #[test]
 fn compilers_get_arrays_reals_calls_and_tasks_and_leave_the_same_image() {
-    // What they leave is compared before anything is measured; that all scans of an image of reals are the same is the test.
+    // Nothing is measured before all have left the same image: that there are figures is what shows it.
     let folder = tempfile::tempdir().expect("a folder");
     let mut files: Vec<String> = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples"))
         .expect("examples")

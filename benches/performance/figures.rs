@@ -8,11 +8,12 @@ use std::time::Instant;
 
 use rung::engine::elide::Elided;
 use rung::engine::jit::{Edited, Jit};
-use rung::logic::{Binary, Op, Program};
+use rung::logic::Program;
 use rung::source::Source;
 use rung::{check, frontend, lower, opt};
 use rung_runtime::Scan;
 
+use crate::edit::edited_at;
 use crate::{Plan, generated, median, rung};
 
 pub(crate) struct Figures {
@@ -24,25 +25,16 @@ pub(crate) struct Figures {
     /// Compiling all, and one changed section, in milliseconds.
     pub(crate) full: f64,
     pub(crate) edit: f64,
-    /// A scan that changes nothing, in nanoseconds: run, and left out.
-    pub(crate) idle_run: f64,
-    pub(crate) idle_left_out: f64,
+    /// A scan that changes nothing, in nanoseconds: run; left out by whoever writes nothing but inputs, as the scan loop; and
+    /// left out where anything may have been written.
+    pub(crate) idle: [f64; 3],
 }
 
 pub(crate) fn measure(plan: &Plan, folder: &Path) -> Figures {
     let (first_scan, file_bytes) = first_scan(plan, folder);
     let (full, edit) = edit(plan, folder);
-    let (idle_run, idle_left_out) = idle(plan);
-    Figures {
-        way_rungs: plan.way,
-        first_scan,
-        file_bytes,
-        edited_rungs: plan.edited,
-        full,
-        edit,
-        idle_run,
-        idle_left_out,
-    }
+    let idle = idle(plan);
+    Figures { way_rungs: plan.way, first_scan, file_bytes, edited_rungs: plan.edited, full, edit, idle }
 }
 
 fn first_scan(plan: &Plan, folder: &Path) -> (f64, u64) {
@@ -72,7 +64,7 @@ fn edit(plan: &Plan, folder: &Path) -> (f64, f64) {
     let path = generated(folder, plan.edited, plan.edited / 6);
     let lowered = lowered(std::fs::read_to_string(path).expect("written"));
     let program = opt::optimise(lowered.clone());
-    let changed = with_another_operation(program.clone(), program.sections.len() / 2);
+    let changed = edited_at(program.clone(), program.sections.len() / 2);
     let full = (0..plan.runs).map(|_| {
         let lowered = lowered.clone();
         let start = Instant::now();
@@ -90,18 +82,6 @@ fn edit(plan: &Plan, folder: &Path) -> (f64, f64) {
         time
     });
     (full, median(edits.collect()))
-}
-
-/// The same program with an AND of a section made an OR.
-fn with_another_operation(mut program: Program, section: usize) -> Program {
-    let range = program.section_range(section);
-    let is_and = |op: &Op| matches!(op, Op::Binary(Binary::And, ..));
-    let and = program.instructions[range].iter_mut().find(|instruction| is_and(&instruction.op));
-    let and = and.expect("contacts in series");
-    if let Op::Binary(_, a, b) = and.op {
-        and.op = Op::Binary(Binary::Or, a, b);
-    }
-    program
 }
 
 /// A program that comes to rest: each rung reads inputs and the coils of rungs before it, and one in six has a timer.
@@ -133,33 +113,36 @@ fn at_rest(rungs: u32) -> String {
     text
 }
 
-/// A scan of a program that is at rest, run and left out. They take turns.
-fn idle(plan: &Plan) -> (f64, f64) {
+/// A scan of a program that is at rest, run and left out, see [`Figures::idle`]. They take turns.
+fn idle(plan: &Plan) -> [f64; 3] {
     let program = opt::optimise(lowered(at_rest(plan.way)));
-    let mut jit = Jit::compile(&program).expect("code for this machine");
-    let mut elided = Elided::new(Jit::compile(&program).expect("code for this machine"), &program);
-    let mut images = [program.layout.initial_image(), program.layout.initial_image()];
+    let jit = || Jit::compile(&program).expect("code for this machine");
+    let mut run = jit();
+    let [mut by_loop, mut by_anyone] = [(); 2].map(|()| Elided::new(jit(), &program));
+    let mut images = [(); 3].map(|()| program.layout.initial_image());
     let mut now = 0;
     let mut turn = |scans: i64| {
-        let mut times = [0.0; 2];
-        let engines: [&mut dyn Scan; 2] = [&mut jit, &mut elided];
-        for ((engine, image), time) in engines.into_iter().zip(&mut images).zip(&mut times) {
+        let [image, of_loop, of_anyone] = &mut images;
+        let times = now..now + scans;
+        now += scans;
+        let timed = |scan: &mut dyn FnMut(i64)| {
             let start = Instant::now();
-            for scan in 0..scans {
-                engine.scan(black_box(image), now + scan * 1_000_000);
-            }
-            *time = start.elapsed().as_secs_f64() * 1e9 / scans as f64;
-        }
-        now += scans * 1_000_000;
-        times
+            times.clone().for_each(|number| scan(number * 1_000_000));
+            start.elapsed().as_secs_f64() * 1e9 / scans as f64
+        };
+        [
+            timed(&mut |now| run.scan(black_box(image), now)),
+            timed(&mut |now| by_loop.scan_inputs(black_box(of_loop), now)),
+            timed(&mut |now| by_anyone.scan(black_box(of_anyone), now)),
+        ]
     };
     // Until all timers have run out, and the program was found to be at rest.
     for _ in 0..40 {
         turn(100);
     }
-    let times: Vec<[f64; 2]> = (0..41).map(|_| turn(100)).collect();
-    let scans = elided.left_out();
-    assert!(scans >= 41 * 100, "the program is not at rest: {scans} scans were left out");
-    assert_eq!(images[0].len(), images[1].len());
-    (median(times.iter().map(|times| times[0]).collect()), median(times.iter().map(|times| times[1]).collect()))
+    let times: Vec<[f64; 3]> = (0..41).map(|_| turn(100)).collect();
+    for elided in [&by_loop, &by_anyone] {
+        assert!(elided.left_out() >= 41 * 100, "the program is not at rest: {} scans were left out", elided.left_out());
+    }
+    std::array::from_fn(|which| median(times.iter().map(|times| times[which]).collect()))
 }

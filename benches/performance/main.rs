@@ -4,6 +4,8 @@
 //! a test it does the same on small programs into a temporary folder. Nothing is written but what was measured in that run.
 #![expect(clippy::print_stderr, reason = "it takes minutes, and says what it is at")]
 
+#[path = "../support/edit.rs"]
+mod edit;
 mod engines;
 mod figures;
 mod page;

@@ -106,7 +106,7 @@ fn measure(arguments: &Arguments, mut lowered: Program) -> Result<Measured, Fail
         subjects.extend(subject.map(|subject| (rows.len(), subject)));
         rows.push(row);
     }
-    compare(&lowered, &rows, &subjects)?;
+    compare(&lowered, &rows, &mut subjects)?;
     for (row, nanoseconds) in take_turns(&mut subjects, arguments.scans)? {
         rows[row].nanoseconds = Some(nanoseconds);
     }
@@ -124,12 +124,12 @@ fn every_task_every_scan(program: &mut Program) {
 fn prepare<'p>(
     engine: Engine,
     lowered: &'p Program,
-    optimised: &'p Program,
+    optimised: &Program,
     patience: Duration,
 ) -> Result<(Row, Option<Subject<'p>>), Failure> {
     let mut row = Row::new(engine.name());
     if engine.compiler().is_none() {
-        let (subject, facts) = Subject::native(engine, lowered, optimised)?;
+        let (subject, facts) = Subject::native(engine, lowered)?;
         row.compile_ms = Some(facts.compile.as_secs_f64() * 1e3);
         row.code_bytes = Some(facts.code_bytes);
         row.instructions = facts.instructions.map(to_f64);
@@ -157,7 +157,7 @@ fn prepare<'p>(
 ///
 /// # Errors
 /// When one leaves another image than the first.
-fn compare(program: &Program, rows: &[Row], subjects: &[(usize, Subject<'_>)]) -> Result<(), Failure> {
+fn compare(program: &Program, rows: &[Row], subjects: &mut [(usize, Subject<'_>)]) -> Result<(), Failure> {
     let mut expected: Option<(&str, Vec<u8>)> = None;
     for (row, subject) in subjects {
         let image = subject.image_after(program, COMPARED_SCANS)?;

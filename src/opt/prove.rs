@@ -62,6 +62,15 @@ impl Report {
         self.by_structure + self.exhaustively + self.by_sat
     }
 
+    /// Counts a value that was proved.
+    fn count(&mut self, method: Method) {
+        match method {
+            Method::Structure => self.by_structure += 1,
+            Method::Exhaustion => self.exhaustively += 1,
+            Method::Sat => self.by_sat += 1,
+        }
+    }
+
     fn add(&mut self, other: Self) {
         self.by_structure += other.by_structure;
         self.exhaustively += other.exhaustively;
@@ -218,15 +227,4 @@ fn compare(before: &Program, after: &Program) -> Result<Report, Box<(Part, Diffe
         }
     }
     Ok(report)
-}
-
-impl Report {
-    /// Counts a value that was proved.
-    fn count(&mut self, method: Method) {
-        match method {
-            Method::Structure => self.by_structure += 1,
-            Method::Exhaustion => self.exhaustively += 1,
-            Method::Sat => self.by_sat += 1,
-        }
-    }
 }

@@ -83,10 +83,8 @@ pub(super) struct Facts {
 
 /// Something that is ready to run.
 pub(super) enum Subject<'p> {
-    /// An engine in this process, its plant, and how to make it again.
+    /// An engine in this process, and its plant.
     Native {
-        engine: Engine,
-        program: &'p Program,
         scan: Box<dyn Scan>,
         plant: Plant<'p>,
     },
@@ -97,11 +95,11 @@ pub(super) enum Subject<'p> {
 }
 
 impl<'p> Subject<'p> {
-    /// An engine of this process on an optimised program; compiling it starts from the lowered one.
+    /// An engine of this process on a program that is lowered and not yet optimised.
     ///
     /// # Errors
     /// When it cannot be compiled.
-    pub(super) fn native(engine: Engine, lowered: &Program, optimised: &'p Program) -> Result<(Self, Facts), Failure> {
+    pub(super) fn native(engine: Engine, lowered: &'p Program) -> Result<(Self, Facts), Failure> {
         let input = lowered.clone();
         let start = Instant::now();
         let program = opt::optimise(input);
@@ -117,14 +115,15 @@ impl<'p> Subject<'p> {
                 (Box::new(textbook), bytes, None, compile)
             }
             _ => {
-                let jit = compiled(&program)?;
+                let jit =
+                    Jit::compile(&program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))?;
                 let compile = start.elapsed();
                 let instructions = host_isa().ok().and_then(|isa| instructions(&jit, isa.triple()).ok());
                 let bytes = jit.code_bytes();
                 (Box::new(jit), bytes, instructions, compile)
             }
         };
-        let subject = Self::Native { engine, program: optimised, scan, plant: Plant::new(optimised) };
+        let subject = Self::Native { scan, plant: Plant::new(lowered) };
         Ok((subject, Facts { compile, code_bytes, instructions }))
     }
 
@@ -137,18 +136,13 @@ impl<'p> Subject<'p> {
         Ok(Self::Compiled { compiled, process })
     }
 
-    /// The image after so many scans from the start; what is measured goes on from where it is.
+    /// The image after so many scans from the start, on a plant or in a process of its own.
     ///
     /// # Errors
-    /// As for making and running it.
-    pub(super) fn image_after(&self, program: &Program, scans: u64) -> Result<Vec<u8>, Failure> {
+    /// When a compiled program does not run.
+    pub(super) fn image_after(&mut self, program: &Program, scans: u64) -> Result<Vec<u8>, Failure> {
         match self {
-            Self::Native { engine, program: optimised, .. } => {
-                let mut scan: Box<dyn Scan> = match engine {
-                    Engine::Interp => Box::new(Interpreter::new(optimised)),
-                    Engine::Textbook => Box::new(Textbook::new(optimised)),
-                    _ => Box::new(compiled(optimised)?),
-                };
+            Self::Native { scan, .. } => {
                 let mut plant = Plant::new(program);
                 plant.run(scan.as_mut(), scans);
                 Ok(plant.image().to_vec())
@@ -167,10 +161,6 @@ impl<'p> Subject<'p> {
             Self::Compiled { process, .. } => process.run(scans),
         }
     }
-}
-
-fn compiled(program: &Program) -> Result<Jit, Failure> {
-    Jit::compile(program).map_err(|error| Failure::new(Code::CannotCompile, error.to_string()))
 }
 
 /// Machine instructions of one scan.

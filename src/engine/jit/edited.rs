@@ -56,11 +56,12 @@ impl Edited {
         let compiled = clif::compile_some(&program, &fresh, &host()?)?;
         let calls = Call::install(&compiled).map_err(CompileError::Memory)?;
         let mut fresh = compiled.into_iter().zip(calls);
+        let mut old: Vec<Option<Chunk>> = std::mem::take(&mut self.jit.chunks).into_iter().map(Some).collect();
         let mut update = Update { compiled: 0, kept: 0 };
         let installed = sections.into_iter().zip(kept).filter_map(|(sections, kept)| match kept {
-            Some(old) => {
+            Some(kept) => {
                 update.kept += 1;
-                Some((moved(&self.jit.chunks[old], sections), self.jit.code.calls()[old].clone()))
+                Some((moved(old[kept].take()?, sections), self.jit.code.calls()[kept].clone()))
             }
             None => {
                 update.compiled += 1;
@@ -83,7 +84,7 @@ impl Edited {
         &self.jit
     }
 
-    /// For each chunk of another program the one of this that becomes the same code. What stands before the first edit and
+    /// For each chunk of another program the one of this that becomes the same code, each once. What stands before the first edit and
     /// behind the last one is found by its place, what moved in between by its length.
     fn kept(&self, program: &Program, sections: &[Range<usize>]) -> Vec<Option<usize>> {
         let old: Vec<Range<usize>> = self.program.chunks();
@@ -106,17 +107,22 @@ impl Edited {
             by_length.entry(self.program.instruction_range(sections.clone()).len()).or_default().push(of);
         }
         for new in first..last {
-            let candidates = by_length.get(&program.instruction_range(sections[new].clone()).len());
-            kept[new] = candidates.into_iter().flatten().copied().find(|of| same(new, *of));
+            kept[new] =
+                by_length.get_mut(&program.instruction_range(sections[new].clone()).len()).and_then(|candidates| {
+                    let found = candidates.iter().position(|of| same(new, *of))?;
+                    Some(candidates.remove(found))
+                });
         }
         kept
     }
 }
 
 /// The chunk, of sections that have other numbers.
-fn moved(chunk: &Chunk, sections: Range<usize>) -> Chunk {
-    let marks = chunk.marks.iter().map(|(offset, section)| (*offset, section + sections.start - chunk.sections.start));
-    Chunk { marks: marks.collect(), sections, ..chunk.clone() }
+fn moved(mut chunk: Chunk, sections: Range<usize>) -> Chunk {
+    for (_, section) in &mut chunk.marks {
+        *section = *section + sections.start - chunk.sections.start;
+    }
+    Chunk { sections, ..chunk }
 }
 
 impl Scan for Edited {
