@@ -116,6 +116,7 @@ impl Code {
     ///
     /// # Panics
     /// When the image is too short.
+    #[inline]
     pub(super) fn run_all(&self, image: &mut [u8], now: i64) {
         let Some(function) = self.only else { return self.run(0..self.calls.len(), image, now) };
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
@@ -128,6 +129,7 @@ impl Code {
     ///
     /// # Panics
     /// When the image is too short.
+    #[inline(never)]
     pub(super) fn run(&self, chunks: Range<usize>, image: &mut [u8], now: i64) {
         assert!(image.len() >= self.reach, "the image is shorter than the program's layout");
         let image = image.as_mut_ptr();
