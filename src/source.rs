@@ -139,7 +139,7 @@ impl Source {
     }
 
     fn without_nul(name: String, mut text: String) -> Result<Self, Box<(Self, Diagnostic)>> {
-        let Some(at) = text.find('\0') else { return Ok(Self::new(name, text)) };
+        let Some(at) = memchr::memchr(0, text.as_bytes()) else { return Ok(Self::new(name, text)) };
         text.truncate(at);
         let problem = Diagnostic::new(Code::NotText, Span::new(at, at), "a NUL byte stands here")
             .hint("this looks like a binary file");
@@ -163,7 +163,7 @@ impl Source {
 
     fn line_starts(&self) -> &[u32] {
         self.line_starts.get_or_init(|| {
-            let ends = self.text.match_indices('\n').map(|(at, _)| Span::new(at + 1, at + 1).start);
+            let ends = memchr::memchr_iter(b'\n', self.text.as_bytes()).map(|at| Span::new(at + 1, at + 1).start);
             std::iter::once(0).chain(ends).collect()
         })
     }

@@ -6,7 +6,9 @@
 //! What is cheaper to make than to keep is made again where another section wants it: constants, the time, loads and
 //! inversions, which become part of the instructions that use them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
 
 use super::forward::WINDOW;
 use super::rewrite::{Output, Place, rewrite_raw};
@@ -43,7 +45,7 @@ struct Sharing {
     chunk: Option<usize>,
     /// By instruction of the program before.
     numbers: Vec<ValueId>,
-    made: HashMap<Key, Made>,
+    made: FxHashMap<Key, Made>,
     /// The number of what a slot holds.
     holds: BTreeMap<SlotId, ValueId>,
     /// How often elements were stored.
@@ -61,7 +63,7 @@ impl Sharing {
             elements,
             chunk: None,
             numbers: Vec::with_capacity(program.instructions.len()),
-            made: HashMap::new(),
+            made: FxHashMap::default(),
             holds: BTreeMap::new(),
             stores: 0,
         }

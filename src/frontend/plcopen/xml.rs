@@ -373,7 +373,7 @@ impl<'a> Reading<'a> {
         if self.skipped > 0 {
             return Ok(());
         }
-        let blank = text.bytes().all(|byte| byte.is_ascii_whitespace()) || text.trim_start().is_empty();
+        let blank = is_blank(&text);
         let Some(open) = self.open.last() else {
             return if blank { Ok(()) } else { Err(malformed(span, "text stands outside of the elements".to_owned())) };
         };
@@ -409,6 +409,15 @@ fn is_read_data(tag: &BytesStart<'_>) -> bool {
         let last = name.rsplit('/').next().unwrap_or(name);
         READ_DATA.iter().any(|known| last.eq_ignore_ascii_case(known))
     })
+}
+
+/// Whether nothing but blanks is there: between most elements, with the indentation of the next.
+fn is_blank(text: &str) -> bool {
+    // A whole block at a time, which a loop that may end at each byte is not.
+    let blocks = text.as_bytes().chunks(16);
+    let ascii =
+        |block: &[u8]| block.iter().fold(true, |blank, byte| blank & matches!(byte, b' ' | b'\t' | b'\n' | b'\r'));
+    blocks.into_iter().all(ascii) || text.trim_start().is_empty()
 }
 
 /// A name without its prefix. Names are short, so that a search made for long texts would take longer.

@@ -1,6 +1,8 @@
 //! The view of trees as ANDs of literals, and what makes them smaller.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
+
+use rustc_hash::FxHashMap;
 
 use crate::logic::ValueId;
 
@@ -46,9 +48,9 @@ pub(super) struct Graph {
     shared: Vec<bool>,
     /// By node: what it is made simpler, once it was.
     simple: Vec<Option<Literal>>,
-    leaves: HashMap<ValueId, u32>,
+    leaves: FxHashMap<ValueId, u32>,
     /// The simple ANDs, by their literals in order.
-    interned: HashMap<Vec<Literal>, u32>,
+    interned: FxHashMap<Vec<Literal>, u32>,
     /// By node: what it came out as, once it did.
     pub(super) emitted: Vec<Option<super::emit::Emitted>>,
 }

@@ -257,7 +257,7 @@ impl Page<'_> {
 
     /// A pin with its wires, each drawn from the pin back to where it comes from.
     fn point(&self, xml: &mut Xml, element: &Element, wires: &[Source], pin: i32) {
-        xml.element("connectionPointIn", &[], |xml| {
+        let write = |xml: &mut Xml| {
             xml.position("relPosition", 0, element.shape.line() + pin * PIN);
             let end = (element.x, self.line(element) + pin * PIN);
             for wire in wires {
@@ -280,6 +280,11 @@ impl Page<'_> {
                     xml.position("position", start.0, start.1);
                 });
             }
-        });
+        };
+        // With one wire, as most pins have, all of it is short.
+        match wires.len() {
+            0 | 1 => xml.on_one_line("connectionPointIn", &[], write),
+            _ => xml.element("connectionPointIn", &[], write),
+        }
     }
 }
