@@ -28,16 +28,12 @@ enum From {
 }
 
 /// The wires of a connection point.
-fn wires<'d>(point: Node<'d, '_>) -> impl Iterator<Item = Wire> + 'd {
-    let connections: Vec<_> = point
-        .all("connection")
-        .map(|node| Wire {
-            from: From::Element(node.attribute("refLocalId").and_then(|id| id.parse().ok())),
-            pin: node.attribute("formalParameter").map(str::to_owned),
-            span: node.span(),
-        })
-        .collect();
-    connections.into_iter()
+fn wires<'d, 'a>(point: Node<'d, 'a>) -> impl Iterator<Item = Wire> + use<'d, 'a> {
+    point.all("connection").map(|node| Wire {
+        from: From::Element(node.attribute("refLocalId").and_then(|id| id.parse().ok())),
+        pin: node.attribute("formalParameter").map(str::to_owned),
+        span: node.span(),
+    })
 }
 
 /// Reads a body.
@@ -410,6 +406,9 @@ enum End {
 
 /// The sources of wires, each once, through any number of connectors.
 fn follow(ends: &[End], feeds: &HashMap<usize, Vec<End>>) -> Vec<Source> {
+    if let [End::Source(source)] = ends {
+        return vec![*source];
+    }
     let mut sources = Vec::new();
     let mut seen = HashSet::new();
     let mut found = HashSet::new();

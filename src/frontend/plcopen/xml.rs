@@ -111,17 +111,17 @@ impl<'d, 'a> Node<'d, 'a> {
     }
 
     /// The elements in it, in order; not the comments.
-    pub(super) fn children(self) -> impl Iterator<Item = Self> {
+    pub(super) fn children(self) -> impl Iterator<Item = Self> + use<'d, 'a> {
         self.children_and_comments().filter(|node| !node.name().is_empty())
     }
 
     /// The elements and comments in it, in order. A comment has an empty name.
-    pub(super) fn children_and_comments(self) -> impl Iterator<Item = Self> {
+    pub(super) fn children_and_comments(self) -> impl Iterator<Item = Self> + use<'d, 'a> {
         std::iter::successors(self.at(self.data().first_child), |node| node.at(node.data().next))
     }
 
     /// The elements of that name in it, in order.
-    pub(super) fn all(self, name: &str) -> impl Iterator<Item = Self> {
+    pub(super) fn all<'n>(self, name: &'n str) -> impl Iterator<Item = Self> + use<'d, 'a, 'n> {
         self.children().filter(move |node| node.name() == name)
     }
 
