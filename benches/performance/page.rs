@@ -111,8 +111,8 @@ const SCAN: &str = "\
 `jit` is Rung's own code, `interp` its interpreter, `textbook` one that takes one operation after another in a `match`.
 `gcc-c` and `clang-c` are these compilers at `-O2` on the C that Rung emits, which its passes have simplified already;
 `gcc-equations` and `clang-equations` get the program as it was drawn, as equations over variables at fixed addresses, 64 rungs a
-function. The inputs change at random, a tenth of them every 16 scans, and scans follow each other without a pause. Before
-anything is measured, all of them have left the same image. Compile time starts from the lowered program, for Rung with all of
+function. The inputs change at random, a tenth of them every 16 scans, which counts as time of the scans; these follow each other
+without a pause. Before anything is measured, all of them have left the same image. Compile time starts from the lowered program, for Rung with all of
 its passes on all cores; bytes are of machine code, and for interpreters of what they have in its place. Instructions are
 executed ones: static for Rung, whose code is a straight line, counted by callgrind for the others.
 
@@ -143,9 +143,9 @@ numbers, and a task that is not due, which is left out whole. `--elide` gives co
 
 Counters that tell how many instructions a cycle finishes were not at hand; what can be read off the tables is this.
 
-- Instructions a rung are nearly the same at all sizes, and time a rung is not: small programs and large ones wait.
-- At 18 rungs Rung executes far fewer instructions than the compilers and gains less time: scans follow each other at once there, and
-  a coil that the next scan reads comes back through memory.
+- Instructions a rung are nearly the same at all sizes, and time a rung is not: large programs wait for their code.
+- At 18 rungs scans follow each other at once, and a coil that the next scan reads comes back through memory.
 - Bytes a rung times rungs is the code, which a scan fetches once, beside the image. Where that passes a level of the cache, as
-  told at the top of this page, nanoseconds a rung rise.
+  told at the top of this page, nanoseconds a rung rise, though code that is too large for the second level is asked for a chunk
+  before it runs, and lies in large pages where the system has them.
 ";
