@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use edit::edited_at;
+use edit::{edited_at, lowered_anew};
 use rung::engine::clif::Chunk;
 use rung::engine::disassemble;
 use rung::engine::jit::{Edited, Jit, host_isa};
@@ -73,7 +73,7 @@ fn edits(criterion: &mut Criterion) {
         bencher.iter_custom(|edits| {
             let mut spent = Duration::ZERO;
             for edit in 0..edits {
-                let next = if edit % 2 == 0 { changed.clone() } else { program.clone() };
+                let next = lowered_anew(if edit % 2 == 0 { &changed } else { &program });
                 let start = Instant::now();
                 let update = edited.update(black_box(next)).expect("code for this machine");
                 spent += start.elapsed();

@@ -14,6 +14,7 @@ mod variables;
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use rung_runtime::{Clock, FieldIo, Scan, ScanLoop, TickSource};
@@ -97,7 +98,7 @@ pub struct Settings {
 /// ```
 pub struct Controller {
     name: String,
-    layout: Layout,
+    layout: Arc<Layout>,
     runs: Runs,
     names: Names,
     settings: Settings,

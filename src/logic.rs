@@ -30,6 +30,8 @@ pub use print::{literal, print};
 pub use task::{Task, Turn};
 pub use verify::{Problem, verify};
 
+use std::sync::Arc;
+
 /// Sections to a chunk, unless the builder cuts earlier. Chunks of 64 to 1024 rungs run alike; smaller ones
 /// compile in parallel and are replaced one by one.
 pub const CHUNK_SECTIONS: u32 = 128;
@@ -39,8 +41,8 @@ pub const CHUNK_SECTIONS: u32 = 128;
 pub struct Program {
     /// The name of the program that it was made from.
     pub name: String,
-    /// The process image.
-    pub layout: Layout,
+    /// The process image: never changed, so that parts and copies of a program share it.
+    pub layout: Arc<Layout>,
     /// What sections come from.
     pub origins: Vec<Origin>,
     /// The sections, in order, which together cover all instructions.

@@ -2,7 +2,7 @@
 //!
 //! A pass is a pure function from a verified program to a verified one that leaves the same image after every scan,
 //! with the same layout, tasks and origins. Only the first two change where sections and chunks end. None may ever move a
-//! value out of its chunk.
+//! value out of its chunk, or look beyond one: behind those two, [parts] of a program are changed on all cores.
 //!
 //! In a debug build every pass is [checked](check) against the program that it was given.
 
@@ -13,6 +13,7 @@ mod cut;
 mod fold;
 mod forward;
 mod narrow;
+mod parts;
 pub mod prove;
 mod reduce;
 mod rewrite;
@@ -47,6 +48,9 @@ pub const PASSES: &[Pass] = &[
     Pass { name: "sweep", run: sweep::sweep },
 ];
 
+/// How many passes, the first ones, look at all of a program.
+const OF_ALL: usize = 2;
+
 /// Runs every pass.
 pub fn optimise(program: Program) -> Program {
     optimise_with(program, |_| true)
@@ -56,18 +60,24 @@ pub fn optimise(program: Program) -> Program {
 ///
 /// # Panics
 /// In a debug build, when a pass changed what the program computes.
-pub fn optimise_with(program: Program, wanted: impl Fn(&Pass) -> bool) -> Program {
-    PASSES.iter().filter(|pass| wanted(pass)).fold(program, |program, pass| {
-        if !cfg!(debug_assertions) || program.instructions.len() > CHECKED {
-            return (pass.run)(program);
-        }
-        let after = (pass.run)(program.clone());
-        assert_eq!(verify(&after), Ok(()), "the pass `{}` breaks what it is given", pass.name);
-        if let Some(difference) = check::difference(&program, &after, IMAGES) {
-            panic!("the pass `{}` changes {difference}", pass.name);
-        }
-        after
-    })
+pub fn optimise_with(program: Program, wanted: impl Fn(&Pass) -> bool + Sync) -> Program {
+    let run = |passes: &[Pass], program: Program| passes.iter().filter(|pass| wanted(pass)).fold(program, checked);
+    let (whole, of_chunks) = PASSES.split_at(OF_ALL);
+    let program = run(whole, program);
+    parts::each(program, |part| run(of_chunks, part))
+}
+
+/// Runs a pass, and in a debug build checks what it did.
+fn checked(program: Program, pass: &Pass) -> Program {
+    if !cfg!(debug_assertions) || program.instructions.len() > CHECKED {
+        return (pass.run)(program);
+    }
+    let after = (pass.run)(program.clone());
+    assert_eq!(verify(&after), Ok(()), "the pass `{}` breaks what it is given", pass.name);
+    if let Some(difference) = check::difference(&program, &after, IMAGES) {
+        panic!("the pass `{}` changes {difference}", pass.name);
+    }
+    after
 }
 
 /// Instructions up to which a debug build checks a pass, and on how many images.

@@ -13,7 +13,7 @@ use rung::source::Source;
 use rung::{check, frontend, lower, opt};
 use rung_runtime::Scan;
 
-use crate::edit::edited_at;
+use crate::edit::{edited_at, lowered_anew};
 use crate::{Plan, generated, median, rung};
 
 pub(crate) struct Figures {
@@ -74,7 +74,7 @@ fn edit(plan: &Plan, folder: &Path) -> (f64, f64) {
     let full = median(full.collect());
     let mut edited = Edited::compile(program.clone()).expect("code for this machine");
     let edits = (0..plan.runs * 5).map(|number| {
-        let next = if number % 2 == 0 { changed.clone() } else { program.clone() };
+        let next = lowered_anew(if number % 2 == 0 { &changed } else { &program });
         let start = Instant::now();
         let update = edited.update(black_box(next)).expect("code for this machine");
         let time = start.elapsed().as_secs_f64() * 1e3;

@@ -1,6 +1,13 @@
 //! An edit of one rung, for measuring what it takes.
 
-use rung::logic::{Binary, Op, Program};
+use std::sync::Arc;
+
+use rung::logic::{Binary, Layout, Op, Program};
+
+/// The program with a layout of its own, as one has that was lowered anew after an edit.
+pub(crate) fn lowered_anew(program: &Program) -> Program {
+    Program { layout: Arc::new(Layout::clone(&program.layout)), ..program.clone() }
+}
 
 /// The same program with an AND of a section made an OR.
 pub(crate) fn edited_at(mut program: Program, section: usize) -> Program {

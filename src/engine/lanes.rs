@@ -27,6 +27,8 @@ mod tests;
 pub(in crate::engine) use compile::{Code, Through};
 pub(in crate::engine) use word::{VECTORS, Word};
 
+use std::sync::Arc;
+
 use super::clif::CompileError;
 use super::jit::host_isa;
 use super::jit::segments::Segments;
@@ -56,7 +58,7 @@ pub struct Refused;
 /// A program, compiled for lanes.
 #[derive(Debug)]
 pub struct Lanes {
-    layout: Layout,
+    layout: Arc<Layout>,
     plan: Plan,
     segments: Segments,
     /// The first of those of an epoch.
@@ -106,7 +108,7 @@ impl Lanes {
         let (code, of_epoch) = compile::compile(&plan, &*isa, wide)?;
         let segments = Segments::install(&code).map_err(CompileError::Memory)?;
         let (turns, dues) = turns(program);
-        Ok(Self { layout: program.layout.clone(), plan, segments, of_epoch, turns, dues })
+        Ok(Self { layout: Arc::clone(&program.layout), plan, segments, of_epoch, turns, dues })
     }
 
     /// So many plants, or as many as a group has, before the first scan: every slot at its initial value. Lanes beyond

@@ -3,6 +3,8 @@
 //! The builder keeps values inside chunks and gives each section its origin. It must never simplify anything:
 //! that is for the passes.
 
+use std::sync::Arc;
+
 use super::{
     ArrayId, Binary, CHUNK_SECTIONS, Compare, Helper, Instruction, Layout, Op, Origin, Program, Section, SlotId, Task,
     Unary, ValueId,
@@ -18,10 +20,10 @@ pub struct Builder {
 
 impl Builder {
     /// An empty program over an image.
-    pub fn new(name: impl Into<String>, layout: Layout) -> Self {
+    pub fn new(name: impl Into<String>, layout: impl Into<Arc<Layout>>) -> Self {
         let program = Program {
             name: name.into(),
-            layout,
+            layout: layout.into(),
             origins: Vec::new(),
             sections: Vec::new(),
             tasks: Vec::new(),

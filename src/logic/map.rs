@@ -313,7 +313,7 @@ mod tests {
         for seed in 0..50 {
             let program = random::program(seed);
             let map = Source::new("map", write_map(&program, "x"));
-            assert_eq!(read_map(&map), Ok(EarlierLayout::from(&program.layout)));
+            assert_eq!(read_map(&map), Ok(EarlierLayout::from(&*program.layout)));
         }
     }
 

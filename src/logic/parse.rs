@@ -2,6 +2,8 @@
 //!
 //! Any text whatever gives a verified program or diagnostics.
 
+use std::sync::Arc;
+
 use super::image::{Extent, Observed};
 use super::print::{UNITS, area_of};
 use super::{
@@ -89,7 +91,7 @@ impl Reader {
             self.tasks.push(Task::always(0));
         }
         let Self { sections, tasks, instructions, .. } = self;
-        Ok(Program { name, layout, origins, sections, tasks, instructions })
+        Ok(Program { name, layout: Arc::new(layout), origins, sections, tasks, instructions })
     }
 
     fn line(&mut self, line: &mut Line<'_>) -> Result<(), Diagnostic> {

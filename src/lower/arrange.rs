@@ -4,6 +4,8 @@
 //! pointers. So each slot comes where the program first stores it, or first loads it if no rung stores it: a coil near
 //! the coils of its neighbours, and so the states of a block and the members of an instance. What no rung uses comes last.
 
+use std::sync::Arc;
+
 use crate::logic::image::{EarlierLayout, ImageTooLarge};
 use crate::logic::{ArrayId, Op, Program, SlotId};
 
@@ -13,7 +15,7 @@ use crate::logic::{ArrayId, Op, Program, SlotId};
 /// [`ImageTooLarge`], as far as padding now makes the difference.
 pub(super) fn by_use(mut program: Program, earlier: Option<&EarlierLayout>) -> Result<Program, ImageTooLarge> {
     let ranks = ranks(&program);
-    program.layout = program.layout.by_use(earlier, &ranks)?;
+    program.layout = Arc::new(Arc::unwrap_or_clone(program.layout).by_use(earlier, &ranks)?);
     Ok(program)
 }
 

@@ -266,7 +266,7 @@ fn an_edit_elsewhere_moves_no_slot() {
     let before = lowered(&text);
     let source = Source::new("test", text.replace("var fb", "var n : INT\n var more : array [0..2] of latch\n var fb"));
     let (checked, _) = check(&frontend::parse(&source).program);
-    let after = lower(&checked.unwrap(), &source, Some(&EarlierLayout::from(&before.layout))).unwrap();
+    let after = lower(&checked.unwrap(), &source, Some(&EarlierLayout::from(&*before.layout))).unwrap();
     for slot in before.layout.slots() {
         let same = after.layout.slots().iter().find(|other| other.name == slot.name).unwrap();
         assert_eq!(same.offset, slot.offset, "{}", slot.name);

@@ -6,6 +6,7 @@
 //! computes.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::check::check;
 use crate::diagnostic::{Code, Diagnostic, any_error};
@@ -198,7 +199,7 @@ fn splice(program: &mut Program, small: &Program) -> Result<SlotId, Vec<Diagnost
         });
     }
     let too_large = || vec![bad(Span::default(), "the process image is too large")];
-    program.layout = layout.finish(Some(&EarlierLayout::from(old))).map_err(|_| too_large())?;
+    program.layout = Arc::new(layout.finish(Some(&EarlierLayout::from(&**old))).map_err(|_| too_large())?);
 
     let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
     let first = count(program.instructions.len());

@@ -145,7 +145,7 @@ fn case(name: String, text: String, program: &Program, moments: Vec<Moment>) -> 
     let has_reals = program.layout.slots().iter().any(|slot| slot.ty.is_real())
         || program.instructions.iter().any(|instruction| instruction.ty.is_real());
     let expected = expected(program, &moments);
-    Case { name, text, layout: program.layout.clone(), has_reals, moments, expected }
+    Case { name, text, layout: Layout::clone(&program.layout), has_reals, moments, expected }
 }
 
 /// The course of the interpreter, as `check.c` prints that of the firmware.

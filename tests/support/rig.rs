@@ -1,6 +1,7 @@
 //! One program on every engine and in the evaluator, side by side.
 
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use rung::check::{self, Checked};
 use rung::diagnostic;
@@ -34,7 +35,7 @@ struct Engine {
 pub(crate) struct Rig<'a> {
     /// The evaluator.
     pub(crate) oracle: Oracle<'a>,
-    layout: logic::Layout,
+    layout: Arc<logic::Layout>,
     engines: Vec<Engine>,
 }
 

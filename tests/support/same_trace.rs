@@ -1,5 +1,7 @@
 //! Whether two programs that should be one compute the same.
 
+use std::sync::Arc;
+
 use rung::check::Checked;
 use rung::elementary::Value;
 use rung::engine::interp::Interpreter;
@@ -12,7 +14,7 @@ use super::random_stimuli::{Stimuli, observed};
 
 /// A program on the interpreter.
 struct Machine {
-    layout: Layout,
+    layout: Arc<Layout>,
     interpreter: Interpreter,
     image: Vec<u8>,
 }

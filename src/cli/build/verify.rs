@@ -68,6 +68,7 @@ fn refused(fault: &Fault, source: &Source) -> Failure {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::Arc;
 
     use clap::Parser;
 
@@ -127,7 +128,8 @@ mod tests {
         assert!(text.starts_with("error[R0908]: the pass `test` makes what is no program: "), "{text}");
         assert!(!written);
         let (outcome, written) = built(|mut program| {
-            program.layout = program.layout.by_use(None, &[3, 2, 1, 0]).expect("a small image");
+            program.layout =
+                Arc::new(Arc::unwrap_or_clone(program.layout).by_use(None, &[3, 2, 1, 0]).expect("a small image"));
             program
         });
         let Err(Failure::Error(text)) = outcome else { panic!("{outcome:?}") };

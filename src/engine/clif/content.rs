@@ -4,6 +4,7 @@
 //! stored lately. Nothing else of a program may ever count, so that what was compiled once can be kept.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::place;
 use crate::elementary::Elementary;
@@ -24,7 +25,10 @@ impl<'a> Comparison<'a> {
     /// Looks for what two programs have in common.
     pub(in crate::engine) fn new(one: &'a Program, other: &'a Program) -> Self {
         let slots = one.layout.slots().iter().zip(other.layout.slots());
-        let same_slots = slots.take_while(|(a, b)| (a.offset, a.ty) == (b.offset, b.ty)).count();
+        let same_slots = match Arc::ptr_eq(&one.layout, &other.layout) {
+            true => one.layout.slots().len(),
+            false => slots.take_while(|(a, b)| (a.offset, a.ty) == (b.offset, b.ty)).count(),
+        };
         let same_slots = u32::try_from(same_slots).unwrap_or(u32::MAX);
         let mut found = Self { programs: [one, other], same_slots, same_first: 0, same_last: 0 };
         let (instructions, others) = (&one.instructions, &other.instructions);

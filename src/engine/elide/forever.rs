@@ -12,6 +12,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::elementary::{Elementary, Value, canonical};
 use crate::logic::image::FAULT;
@@ -33,7 +34,7 @@ enum Known {
 /// What of a program has to be known beforehand.
 #[derive(Debug)]
 pub(super) struct Outlook {
-    layout: Layout,
+    layout: Arc<Layout>,
     instructions: Vec<Instruction>,
     /// The instructions of the tasks that run in every round.
     always: Vec<Range<usize>>,
@@ -46,7 +47,7 @@ impl Outlook {
     pub(super) fn of(program: &Program) -> Self {
         let tasks = (0..program.tasks.len()).filter(|task| program.tasks[*task].interval.is_none());
         Self {
-            layout: program.layout.clone(),
+            layout: Arc::clone(&program.layout),
             instructions: program.instructions.clone(),
             always: tasks.map(|task| program.instruction_range(program.task_range(task))).collect(),
             hidden: hidden(program),

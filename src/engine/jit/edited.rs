@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn an_edit_compiles_the_chunk_that_it_changed_and_perhaps_the_next() {
         let before = ladder(None, None);
-        let earlier = EarlierLayout::from(&before.layout);
+        let earlier = EarlierLayout::from(&*before.layout);
         let chunks = before.chunks().len();
         assert!(chunks > 6, "only {chunks} chunks, which shows little");
         let mut edited = Edited::compile(before.clone()).expect("code for this machine");
