@@ -42,7 +42,7 @@ use crate::logic::{Binary, Op, Program, verify};
 use lower::Built;
 
 pub(super) use array::copy_is_called;
-pub(super) use content::is_same;
+pub(super) use content::Comparison;
 pub use parallel::{compile, compile_some};
 
 /// Pointers into the image that each chunk is given, so that most offsets from one of them are short. With the time

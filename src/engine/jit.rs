@@ -75,6 +75,16 @@ impl Jit {
         Self { tasks, always, chunks, code }
     }
 
+    /// Runs the tasks that are due. It is apart from [`Scan::scan`], which otherwise would save registers for it in every scan.
+    #[inline(never)]
+    fn run_due(&self, image: &mut [u8], now: i64) {
+        for (turn, chunks) in &self.tasks {
+            if turn.take(image, now) {
+                self.code.run(chunks.clone(), image, now);
+            }
+        }
+    }
+
     /// Bytes of machine code, padding between chunks not counted.
     pub fn code_bytes(&self) -> usize {
         self.chunks.iter().map(|chunk| chunk.code.len()).sum()
@@ -88,13 +98,6 @@ impl Jit {
 
 impl Scan for Jit {
     fn scan(&mut self, image: &mut [u8], now: i64) {
-        if self.always {
-            return self.code.run_all(image, now);
-        }
-        for (turn, chunks) in &self.tasks {
-            if turn.take(image, now) {
-                self.code.run(chunks.clone(), image, now);
-            }
-        }
+        if self.always { self.code.run_all(image, now) } else { self.run_due(image, now) }
     }
 }

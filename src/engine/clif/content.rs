@@ -6,87 +6,132 @@
 use std::ops::Range;
 
 use super::place;
+use crate::elementary::Elementary;
 use crate::logic::{ArrayId, Instruction, Layout, Op, Program, SlotId, ValueId};
 
-/// Whether the sections of one program become the same code as those of another, on one target.
-pub(in crate::engine) fn is_same(one: &Program, sections: Range<usize>, other: &Program, others: Range<usize>) -> bool {
-    let (a, b) = (one.instruction_range(sections.clone()), other.instruction_range(others.clone()));
-    // Which section an instruction belongs to decides which stores are late, and is told with the code.
-    let lengths = |program: &Program, sections: Range<usize>| -> Vec<usize> {
-        sections.map(|section| program.section_range(section).len()).collect()
-    };
-    let same = Same { layouts: [&one.layout, &other.layout], starts: [a.start, b.start] };
-    a.len() == b.len()
-        && lengths(one, sections.clone()) == lengths(other, others.clone())
-        && one.instructions[a].iter().zip(&other.instructions[b]).all(|(a, b)| same.instructions(*a, *b))
-        && place::stored_before(one, sections.start) == place::stored_before(other, others.start)
+/// Two programs whose chunks are compared.
+pub(in crate::engine) struct Comparison<'a> {
+    programs: [&'a Program; 2],
+    /// How many slots from the first on lie at the same place in both: all old ones after an edit. Others are looked up.
+    same_slots: u32,
+    /// How many sections are the same in both, from the first on and up to the last. After an edit that is all but a few, so
+    /// that each is looked at once, and not again as what a chunk may have behind it.
+    same_first: usize,
+    same_last: usize,
 }
 
-/// Comparing what stands in two programs.
-struct Same<'a> {
-    layouts: [&'a Layout; 2],
-    /// The first instruction of each chunk.
-    starts: [usize; 2],
-}
-
-impl Same<'_> {
-    fn instructions(&self, a: Instruction, b: Instruction) -> bool {
-        // An operand is the same if it is as far behind the start.
-        let operands = || {
-            let [mut a, mut b] = [a.op.operands(), b.op.operands()];
-            std::iter::from_fn(move || Some((a.next(), b.next())).filter(|pair| *pair != (None, None)))
+impl<'a> Comparison<'a> {
+    /// Looks for what two programs have in common.
+    pub(in crate::engine) fn new(one: &'a Program, other: &'a Program) -> Self {
+        let slots = one.layout.slots().iter().zip(other.layout.slots());
+        let same_slots = slots.take_while(|(a, b)| (a.offset, a.ty) == (b.offset, b.ty)).count();
+        let same_slots = u32::try_from(same_slots).unwrap_or(u32::MAX);
+        let mut found = Self { programs: [one, other], same_slots, same_first: 0, same_last: 0 };
+        let (instructions, others) = (&one.instructions, &other.instructions);
+        let same = instructions.iter().zip(others).take_while(|(a, b)| found.instructions(**a, **b, [0; 2])).count();
+        let ends = one.sections.iter().zip(&other.sections).map(|(a, b)| [a.end as usize, b.end as usize]);
+        found.same_first = ends.clone().take_while(|[a, b]| a == b && *a <= same).count();
+        let lengths = [instructions.len(), others.len()];
+        let backwards = instructions.iter().rev().zip(others.iter().rev());
+        let same = backwards.take_while(|(a, b)| found.instructions(**a, **b, lengths)).count();
+        let starts = |program: &'a Program, length: usize| {
+            (0..program.sections.len()).rev().map(move |section| length - program.section_range(section).start)
         };
-        let near = |pair: (Option<ValueId>, Option<ValueId>)| match pair {
-            (Some(a), Some(b)) => a.index() - self.starts[0] == b.index() - self.starts[1],
-            _ => false,
-        };
-        a.ty == b.ty && self.kinds(a.op, b.op) && operands().all(near)
+        let starts = starts(one, lengths[0]).zip(starts(other, lengths[1]));
+        found.same_last = starts.take_while(|(a, b)| a == b && *a <= same).count();
+        found
     }
 
-    /// Whether two operations are the same but for their operands.
-    fn kinds(&self, a: Op, b: Op) -> bool {
-        match (a, b) {
-            (Op::Load(a), Op::Load(b)) | (Op::Store(a, _), Op::Store(b, _)) => self.slots(a, b),
-            (Op::LoadIndexed(a, _), Op::LoadIndexed(b, _)) | (Op::StoreIndexed(a, ..), Op::StoreIndexed(b, ..)) => {
-                self.arrays(a, b)
-            }
-            (Op::CopyArray(a, from, _), Op::CopyArray(b, other, _)) => self.arrays(a, b) && self.arrays(from, other),
-            (Op::Constant(a), Op::Constant(b)) => a == b,
-            (Op::Unary(a, _), Op::Unary(b, _)) => a == b,
-            (Op::Binary(a, ..), Op::Binary(b, ..)) => a == b,
-            (Op::Compare(a, ..), Op::Compare(b, ..)) => a == b,
-            (Op::Call(a, ..), Op::Call(b, ..)) => a == b,
-            (Op::Now, Op::Now)
-            | (Op::Select(..), Op::Select(..))
-            | (Op::Convert(_), Op::Convert(_))
-            | (Op::Reinterpret(_), Op::Reinterpret(_)) => true,
-            (
-                Op::Constant(_)
-                | Op::Now
-                | Op::Load(_)
-                | Op::Store(..)
-                | Op::Unary(..)
-                | Op::Binary(..)
-                | Op::Compare(..)
-                | Op::Select(..)
-                | Op::Convert(_)
-                | Op::Reinterpret(_)
-                | Op::Call(..)
-                | Op::LoadIndexed(..)
-                | Op::StoreIndexed(..)
-                | Op::CopyArray(..),
-                _,
-            ) => false,
+    /// Whether sections of the first program become the same code as those of the second, on one target.
+    pub(in crate::engine) fn is_same(&self, sections: Range<usize>, others: Range<usize>) -> bool {
+        let [one, other] = self.programs;
+        let before = |sections: &Range<usize>| Some(sections.start.checked_sub(place::LATELY)?..sections.start);
+        self.computes_the_same(sections.clone(), others.clone())
+            && (before(&sections).zip(before(&others)).is_some_and(|(a, b)| self.is_known(&a, &b))
+                || place::stored_before(one, sections.start).eq(place::stored_before(other, others.start)))
+    }
+
+    /// Whether sections are among those that the two programs have in common.
+    fn is_known(&self, sections: &Range<usize>, others: &Range<usize>) -> bool {
+        let behind = |program: &Program, sections: &Range<usize>| {
+            let count = program.sections.len();
+            [count - sections.start, count - sections.end]
+        };
+        let [from, to] = behind(self.programs[0], sections);
+        (sections == others && sections.end <= self.same_first)
+            || (from <= self.same_last && [from, to] == behind(self.programs[1], others))
+    }
+
+    /// Whether sections, which are chunks, consist of the same instructions.
+    fn computes_the_same(&self, sections: Range<usize>, others: Range<usize>) -> bool {
+        if self.is_known(&sections, &others) {
+            return true;
         }
+        let [one, other] = self.programs;
+        let (a, b) = (one.instruction_range(sections.clone()), other.instruction_range(others.clone()));
+        let starts = [a.start, b.start];
+        // Which section an instruction belongs to decides which stores are late, and is told with the code.
+        let lengths =
+            |program: &'a Program, sections: Range<usize>| sections.map(|section| program.section_range(section).len());
+        a.len() == b.len()
+            && lengths(one, sections).eq(lengths(other, others))
+            && one.instructions[a].iter().zip(&other.instructions[b]).all(|(a, b)| self.instructions(*a, *b, starts))
+    }
+
+    /// Whether two instructions are the same: their operands are if they are as far from two places.
+    fn instructions(&self, a: Instruction, b: Instruction, [here, there]: [usize; 2]) -> bool {
+        let near = |a: ValueId, b: ValueId| a.index() + there == b.index() + here;
+        a.ty == b.ty
+            && match (a.op, b.op) {
+                (Op::Constant(a), Op::Constant(b)) => a == b,
+                (Op::Now, Op::Now) => true,
+                (Op::Load(a), Op::Load(b)) => self.slots(a, b),
+                (Op::Store(to, a), Op::Store(other, b)) => self.slots(to, other) && near(a, b),
+                (Op::Unary(op, a), Op::Unary(other, b)) => op == other && near(a, b),
+                (Op::Binary(op, a, x), Op::Binary(other, b, y)) => op == other && near(a, b) && near(x, y),
+                (Op::Compare(op, a, x), Op::Compare(other, b, y)) => op == other && near(a, b) && near(x, y),
+                (Op::Select(a, x, v), Op::Select(b, y, w)) => near(a, b) && near(x, y) && near(v, w),
+                (Op::Convert(a), Op::Convert(b)) | (Op::Reinterpret(a), Op::Reinterpret(b)) => near(a, b),
+                (Op::Call(helper, a, x), Op::Call(other, b, y)) => {
+                    helper == other && near(a, b) && x.zip(y).is_none_or(|(x, y)| near(x, y))
+                }
+                (Op::LoadIndexed(from, a), Op::LoadIndexed(other, b)) => self.arrays(from, other) && near(a, b),
+                (Op::StoreIndexed(to, a, x), Op::StoreIndexed(other, b, y)) => {
+                    self.arrays(to, other) && near(a, b) && near(x, y)
+                }
+                (Op::CopyArray(to, from, a), Op::CopyArray(other, source, b)) => {
+                    self.arrays(to, other) && self.arrays(from, source) && near(a, b)
+                }
+                (
+                    Op::Constant(_)
+                    | Op::Now
+                    | Op::Load(_)
+                    | Op::Store(..)
+                    | Op::Unary(..)
+                    | Op::Binary(..)
+                    | Op::Compare(..)
+                    | Op::Select(..)
+                    | Op::Convert(_)
+                    | Op::Reinterpret(_)
+                    | Op::Call(..)
+                    | Op::LoadIndexed(..)
+                    | Op::StoreIndexed(..)
+                    | Op::CopyArray(..),
+                    _,
+                ) => false,
+            }
     }
 
     fn slots(&self, a: SlotId, b: SlotId) -> bool {
-        let (a, b) = (self.layouts[0].slot(a), self.layouts[1].slot(b));
-        (a.offset, a.ty) == (b.offset, b.ty)
+        let place = |layout: &Layout, slot: SlotId| -> (u32, Elementary) {
+            let slot = layout.slot(slot);
+            (slot.offset, slot.ty)
+        };
+        (a == b && a.0 < self.same_slots) || place(&self.programs[0].layout, a) == place(&self.programs[1].layout, b)
     }
 
     fn arrays(&self, a: ArrayId, b: ArrayId) -> bool {
-        let (a, b) = (self.layouts[0].array(a), self.layouts[1].array(b));
+        let (a, b) = (self.programs[0].layout.array(a), self.programs[1].layout.array(b));
         a.count == b.count && self.slots(a.first, b.first)
     }
 }

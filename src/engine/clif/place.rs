@@ -7,7 +7,7 @@ use super::{BASES, Target};
 use crate::logic::{Op, Program, SlotId};
 
 /// Sections for which a store may still wait on its way to memory, so that a wider load over it stalls.
-const LATELY: usize = 96;
+pub(super) const LATELY: usize = 96;
 
 /// Bytes that a wide load of a BOOL reads.
 const WIDE: u32 = 4;
@@ -15,7 +15,7 @@ const WIDE: u32 = 4;
 /// Chooses the pointers that bring the most accesses of a chunk within short reach, and says how many it took. One that
 /// can be the image itself is.
 pub(super) fn bases(program: &Program, sections: Range<usize>, target: Target) -> ([u32; BASES], usize) {
-    let mut offsets: Vec<u32> = accesses(program, sections).map(|(_, slot)| program.layout.slot(slot).offset).collect();
+    let mut offsets: Vec<u32> = accesses(program, sections).map(|slot| program.layout.slot(slot).offset).collect();
     offsets.sort_unstable();
     let (mut bases, mut used) = ([0; BASES], 0);
     for base in &mut bases {
@@ -43,22 +43,15 @@ fn densest(offsets: &[u32], span: u32) -> Option<Range<usize>> {
     best
 }
 
-/// Every load and store of some sections: whether it stores, and what; of an array, its first element.
-fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (bool, SlotId)> {
-    let instructions = if sections.is_empty() {
-        0..0
-    } else {
-        program.section_range(sections.start).start..program.section_range(sections.end - 1).end
-    };
+/// What some sections load and store; of an array, its first element.
+fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = SlotId> {
     let first = |array| program.layout.array(array).first;
-    program.instructions[instructions]
+    program.instructions[program.instruction_range(sections)]
         .iter()
         .flat_map(move |instruction| match instruction.op {
-            Op::Load(slot) => [Some((false, slot)), None],
-            Op::Store(slot, _) => [Some((true, slot)), None],
-            // Which element is not known; it counts as one that is not stored, so that wide loads beside it stay.
-            Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => [Some((false, first(array))), None],
-            Op::CopyArray(to, from, _) => [Some((false, first(to))), Some((false, first(from)))],
+            Op::Load(slot) | Op::Store(slot, _) => [Some(slot), None],
+            Op::LoadIndexed(array, _) | Op::StoreIndexed(array, ..) => [Some(first(array)), None],
+            Op::CopyArray(to, from, _) => [Some(first(to)), Some(first(from))],
             Op::Constant(_)
             | Op::Now
             | Op::Unary(..)
@@ -73,19 +66,17 @@ fn accesses(program: &Program, sections: Range<usize>) -> impl Iterator<Item = (
 }
 
 /// What the sections before `section` stored lately, as what code depends on: how many sections ago, where, and how wide.
-pub(super) fn stored_before(program: &Program, section: usize) -> Vec<(usize, u32, u32)> {
+pub(super) fn stored_before(program: &Program, section: usize) -> impl Iterator<Item = (usize, u32, u32)> {
     let count = program.sections.len();
-    let mut stored = Vec::new();
-    for ago in (1..=LATELY.min(count)).rev() {
-        let earlier = (section + count - ago) % count;
-        for (stores, slot) in accesses(program, earlier..earlier + 1) {
-            if stores {
-                let slot = program.layout.slot(slot);
-                stored.push((ago, slot.offset, slot.ty.size()));
-            }
-        }
-    }
-    stored
+    (1..=LATELY.min(count)).rev().flat_map(move |ago| {
+        let earlier = program.section_range((section + count - ago) % count);
+        program.instructions[earlier].iter().filter_map(move |instruction| {
+            // Which element of an array is stored is not known; none counts, so that wide loads beside it stay.
+            let Op::Store(slot, _) = instruction.op else { return None };
+            let slot = program.layout.slot(slot);
+            Some((ago, slot.offset, slot.ty.size()))
+        })
+    })
 }
 
 /// The bytes that were stored lately, as the sections run one after another.

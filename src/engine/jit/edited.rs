@@ -11,7 +11,7 @@ use rung_runtime::Scan;
 
 use super::memory::Call;
 use super::{CompileError, Jit, host};
-use crate::engine::clif::{self, Chunk};
+use crate::engine::clif::{self, Chunk, Comparison};
 use crate::logic::Program;
 
 /// A compiled program that remembers what it was compiled from.
@@ -88,8 +88,8 @@ impl Edited {
     /// behind the last one is found by its place, what moved in between by its length.
     fn kept(&self, program: &Program, sections: &[Range<usize>]) -> Vec<Option<usize>> {
         let old: Vec<Range<usize>> = self.program.chunks();
-        let same =
-            |new: usize, of: usize| clif::is_same(&self.program, old[of].clone(), program, sections[new].clone());
+        let comparison = Comparison::new(&self.program, program);
+        let same = |new: usize, of: usize| comparison.is_same(old[of].clone(), sections[new].clone());
         let shorter = old.len().min(sections.len());
         let mut kept = vec![None; sections.len()];
         let mut first = 0;

@@ -6,6 +6,9 @@ use crate::logic::{Instruction, Op, Program, Unary};
 
 /// The first section that computes more of reals than a processor can, if there is one.
 pub(in crate::engine) fn first_beyond(program: &Program, floats: Floats) -> Option<usize> {
+    if floats == Floats::Double {
+        return None;
+    }
     let beyond = |at: usize| needed(program, program.instructions[at]) > floats;
     (0..program.sections.len()).find(|section| program.section_range(*section).any(beyond))
 }
