@@ -28,7 +28,6 @@ pub(crate) enum Braces {
 }
 
 /// What can stand where a statement can.
-#[expect(clippy::large_enum_variant, reason = "it is taken apart where it is made")]
 enum Start {
     Statement(StatementKind),
     /// A condition, the first label of a branch of CASE, or a mistake: its surroundings say.
