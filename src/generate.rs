@@ -13,8 +13,10 @@ mod tests;
 use std::error::Error;
 use std::fmt;
 
+use lean_string::LeanString;
 use rand::Rng;
 use rand_pcg::Pcg32;
+use thin_vec::ThinVec;
 
 use crate::elementary::Elementary;
 use crate::ladder::library::StandardBlock;
@@ -153,10 +155,11 @@ impl Generator {
                 vec![element(ElementKind::Parallel(Circuit { branches, span: NOWHERE }))]
             }
         };
-        if self.has_timer(rung) {
-            elements.push(self.timer(rung));
-        }
+        let timer = self.has_timer(rung).then(|| self.timer(rung));
         let target = reference(coil_name(rung));
+        // Of a million rungs, what a vector holds in reserve is a hundred megabytes.
+        elements.reserve_exact(2);
+        elements.extend(timer);
         elements.push(element(ElementKind::Coil { kind: CoilKind::Plain, target }));
         Rung {
             name: Some(name(format!("r{rung}"))),
@@ -201,12 +204,12 @@ impl Generator {
     fn timer(&mut self, rung: u32) -> Element {
         let preset = i64::from(1 + self.below(200)) * 10_000_000;
         let wire = Wire::Value(expression(ExpressionKind::Literal(Literal::Time(preset))));
-        element(ElementKind::Block(BlockCall {
+        element(ElementKind::Block(Box::new(BlockCall {
             instance: reference(format!("t{rung}")),
             type_name: Some(name(StandardBlock::Ton.name())),
             arguments: vec![Argument { pin: name("PT"), wire, span: NOWHERE }],
             power_output: None,
-        }))
+        })))
     }
 }
 
@@ -222,7 +225,7 @@ fn coil_name(rung: u32) -> String {
     if drives_output(rung) { format!("q{rung}") } else { format!("m{rung}") }
 }
 
-fn name(text: impl Into<String>) -> Name {
+fn name(text: impl Into<LeanString>) -> Name {
     Name::new(text, NOWHERE)
 }
 
@@ -251,5 +254,5 @@ fn expression(kind: ExpressionKind) -> Expression {
 }
 
 fn reference(text: String) -> Reference {
-    Reference { root: Root::Name(name(text)), steps: Vec::new(), span: NOWHERE }
+    Reference { root: Root::Name(name(text)), steps: ThinVec::new(), span: NOWHERE }
 }

@@ -15,32 +15,36 @@ mod expression;
 pub mod functions;
 pub mod library;
 mod statement;
+#[cfg(test)]
+mod tests;
 mod types;
 
 pub use configuration::{ProgramInstance, Registers, Setting, Task};
 pub use expression::{
-    ArrayItem, BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, MemberValue, Reference, Root,
-    Step, UnaryOperator,
+    ArrayItem, BinaryOperator, Expression, ExpressionKind, FunctionArgument, Literal, Magnitude, MemberValue,
+    Reference, Root, Step, UnaryOperator,
 };
 pub use statement::{CaseBranch, CaseLabel, ConditionalBranch, Statement, StatementKind};
 pub use types::{Dimension, Field, TypeDeclaration, TypeKind, TypeReference};
 
 use std::fmt;
 
+use lean_string::LeanString;
+
 use crate::source::Span;
 
 /// A name with its spelling as written. Names are compared without regard to case.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Name {
-    /// As written, without back quotes.
-    pub text: String,
+    /// As written, without back quotes. Up to 16 bytes stand in the name itself, which hold most names.
+    pub text: LeanString,
     /// Where.
     pub span: Span,
 }
 
 impl Name {
     /// A name at a place.
-    pub fn new(text: impl Into<String>, span: Span) -> Self {
+    pub fn new(text: impl Into<LeanString>, span: Span) -> Self {
         Self { text: text.into(), span }
     }
 
@@ -186,9 +190,9 @@ pub struct Variable {
     /// Its type; BOOL where it is left out.
     pub ty: Option<TypeReference>,
     /// The IEC address that it stands at.
-    pub address: Option<Address>,
+    pub address: Option<Box<Address>>,
     /// The value that it starts with.
-    pub initial: Option<Expression>,
+    pub initial: Option<Box<Expression>>,
     /// Whether it keeps its value while the power is off.
     pub retain: bool,
     /// The whole declaration.
@@ -276,7 +280,7 @@ pub struct Rung {
     /// Its name, where it has one.
     pub name: Option<Name>,
     /// What it is for, in the drawer's words.
-    pub title: Option<String>,
+    pub title: Option<LeanString>,
     /// Whether it runs; one that is off is checked and drawn all the same.
     pub enabled: bool,
     /// Its network. The left rail is its left side; the power at its right side is not used.
@@ -298,12 +302,12 @@ pub struct Circuit {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Branch {
     /// The node that it starts at; without one, the left side of the circuit around it.
-    pub from: Option<Name>,
+    pub from: Option<Box<Name>>,
     /// In order; empty for a plain wire.
     pub elements: Vec<Element>,
     /// The node that it ends at and feeds; without one, the right side of the circuit around it. The power on a
     /// node is the OR of all branches that end there, and they all must stand before the first that starts there.
-    pub to: Option<Name>,
+    pub to: Option<Box<Name>>,
     /// Where.
     pub span: Span,
 }
@@ -335,7 +339,7 @@ pub enum ElementKind {
         target: Reference,
     },
     /// Calls a function block or, in a box of its own, a function.
-    Block(BlockCall),
+    Block(Box<BlockCall>),
     /// Braces around a BOOL expression: a contact that conducts while it is true.
     Condition(Expression),
     /// Braces around an assignment: it executes while it has power, and passes its power on.
@@ -343,7 +347,7 @@ pub enum ElementKind {
         /// What it writes.
         target: Reference,
         /// The value.
-        value: Expression,
+        value: Box<Expression>,
     },
     /// Structured text in braces: it executes while there is power, and passes its power on.
     Statements(Vec<Statement>),

@@ -34,10 +34,13 @@ use place::Part;
 use statement::Counter;
 use storage::{Cells, Frame, Slots};
 
-use crate::check::{Checked, RungIndex, UnitId, UnitKind, VariableId};
+use crate::check::{Checked, ProgramInstance, RungIndex, UnitId, UnitKind, VariableId};
 use crate::logic::image::{EarlierLayout, ImageTooLarge};
 use crate::logic::{Builder, Origin, Program, ValueId};
 use crate::source::{Source, Span};
+
+/// Instructions that there is room for at first, for each rung: most rungs come to fewer, and room that is not used takes no memory.
+const INSTRUCTIONS_PER_RUNG: usize = 24;
 
 /// Lowers a checked program; slots that an earlier layout has keep their offsets.
 ///
@@ -56,6 +59,8 @@ pub fn lower(checked: &Checked, source: &Source, earlier: Option<&EarlierLayout>
         failed: None,
         counters: Vec::new(),
     };
+    let rungs = |program: &ProgramInstance| checked.unit(program.unit).rungs.len();
+    lowering.logic.reserve(INSTRUCTIONS_PER_RUNG * checked.programs().iter().map(rungs).sum::<usize>());
     for ((task, number), due) in checked.tasks().iter().zip(0..).zip(&slots.due) {
         for (program, frame) in checked.programs().iter().zip(&slots.programs) {
             if program.task.0 == number {
@@ -138,7 +143,7 @@ impl<'a> Lowering<'a> {
         for (index, rung) in (0..).zip(&self.checked.unit(id).rungs) {
             self.land(RungIndex(index));
             self.rung(rung);
-            self.logic.end_section(Origin { label: rung.label.clone(), line: line(rung.span) });
+            self.logic.end_section(Origin { label: rung.label.to_string(), line: line(rung.span) });
         }
     }
 }

@@ -14,6 +14,10 @@ mod spread;
 
 use std::path::{Path, PathBuf};
 
+/// The allocator of the command, whose times and memory the page tells.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// How much is measured.
 struct Plan {
     /// Rungs and timers of the programs that every engine and compiler runs.

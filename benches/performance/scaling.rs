@@ -49,10 +49,11 @@ pub(crate) fn child(rungs: u32) {
     let start = Instant::now();
     let checked = check::check(&program).0.expect("no errors");
     let check = timed(start);
+    drop(program);
     let start = Instant::now();
     let lowered = lower::lower(&checked, &Source::new("synthetic", ""), None).expect("a small image");
     let lower = timed(start);
-    drop((checked, program));
+    drop(checked);
     let start = Instant::now();
     let optimised = opt::optimise(lowered);
     let optimise = timed(start);

@@ -358,7 +358,7 @@ impl Checker<'_> {
     /// A reference in words, for messages.
     fn source_of(&self, reference: &ladder::Reference) -> String {
         match (reference.as_name(), &reference.root) {
-            (Some(name), _) => name.text.clone(),
+            (Some(name), _) => name.text.to_string(),
             (None, ladder::Root::Name(name)) => format!("{}…", name.text),
             (None, ladder::Root::Address(address)) => address.to_string(),
         }

@@ -3,6 +3,8 @@
 
 use std::collections::HashMap;
 
+use lean_string::LeanString;
+
 use super::Checker;
 use super::address::{Extent, class_of, direct_type};
 use super::model::{ArrayType, Dimension, Initial, Type, Variable};
@@ -69,8 +71,8 @@ impl Checker<'_> {
         for (extent, address) in direct.addresses {
             if !self.scope.addresses.contains_key(&extent) {
                 let ty = Type::Elementary(direct_type(address.width));
-                let (name, span) = (address.to_string(), address.span);
-                let variable = variable(name, class_of(address.area), ty, Some(address), span);
+                let (name, span) = (address.to_string().into(), address.span);
+                let variable = variable(name, class_of(address.area), ty, Some(Box::new(address)), span);
                 let id = self.scope.add_nameless(variable, State::Known);
                 self.scope.addresses.insert(extent, id);
             }
@@ -88,7 +90,7 @@ impl Checker<'_> {
             let dimensions = vec![Dimension { first: 0, count }];
             let ty = Type::Array(self.array(ArrayType { dimensions, element: Type::Elementary(Elementary::Word) }));
             // One of that name was declared otherwise.
-            let _ = self.scope.add(variable(name.to_owned(), class, ty, None, span), state);
+            let _ = self.scope.add(variable(name.into(), class, ty, None, span), state);
         }
     }
 
@@ -225,7 +227,7 @@ impl Checker<'_> {
                 if let Some(extent) = self.extent(address)
                     && self.direct.known.insert(extent.clone(), ()).is_none()
                 {
-                    self.direct.addresses.push((extent, address.clone()));
+                    self.direct.addresses.push((extent, (**address).clone()));
                 }
             }
             Root::Name(name) => {
@@ -253,13 +255,13 @@ fn registers_for(step: Option<&Step>) -> i64 {
     let Some(Step::Index(indices, _)) = step else { return REGISTERS_BY_DEFAULT };
     match indices.first().map(|index| &index.kind) {
         Some(ExpressionKind::Literal(Literal::Integer { value, .. })) => {
-            i64::try_from(*value).ok().and_then(|index| index.checked_add(1)).unwrap_or(i64::MAX)
+            i64::try_from(value.get()).ok().and_then(|index| index.checked_add(1)).unwrap_or(i64::MAX)
         }
         _ => REGISTERS_BY_DEFAULT,
     }
 }
 
 /// A variable that its first use declares.
-fn variable(name: String, class: VariableClass, ty: Type, address: Option<Address>, span: Span) -> Variable {
+fn variable(name: LeanString, class: VariableClass, ty: Type, address: Option<Box<Address>>, span: Span) -> Variable {
     Variable { name, class, ty, initial: Initial::Default, retain: false, address, shares: None, span }
 }

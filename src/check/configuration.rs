@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use lean_string::LeanString;
+
 use super::Checker;
 use super::model::{ProgramInstance, Task, TaskId, Type, UnitId};
 use crate::diagnostic::{Code, Diagnostic};
@@ -142,7 +144,7 @@ impl Checker<'_> {
         for (id, task) in (0..).zip(&order) {
             let of_task = std::mem::take(&mut by_task[*task]).into_iter();
             programs.extend(of_task.map(|instance| ProgramInstance { task: TaskId(id), ..instance }));
-            let without = Task { name: String::new(), interval: None, span: Span::default() };
+            let without = Task { name: LeanString::new(), interval: None, span: Span::default() };
             ordered.push(tasks.get(*task).map_or(without, |(_, task)| task.clone()));
         }
         (ordered, programs)

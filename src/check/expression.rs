@@ -102,7 +102,7 @@ impl Checker<'_> {
             }
             Literal::Real { value, ty } => (Untyped::Real(if negative { -value } else { value }), ty),
             Literal::Integer { value, ty, .. } => {
-                let Ok(value) = i128::try_from(value) else {
+                let Ok(value) = i128::try_from(value.get()) else {
                     self.report.push(Diagnostic::new(Code::OutOfRange, span, "no type holds this number"));
                     return None;
                 };

@@ -302,7 +302,7 @@ impl Checker<'_> {
             }
             return value.map(constant).map(Operand::Typed);
         }
-        Some(Operand::Typed(Expression { ty, kind: ExpressionKind::Call { function, arguments } }))
+        Some(Operand::Typed(Expression { ty, kind: ExpressionKind::Call { function, arguments: arguments.into() } }))
     }
 }
 

@@ -69,7 +69,7 @@ impl Boxed {
     /// As an element of a rung.
     pub(super) fn element(self) -> model::Element {
         match self {
-            Self::Call(call) => model::Element::Call(*call),
+            Self::Call(call) => model::Element::Call(call),
             Self::Copy(copied) => {
                 let Copied { enable, target, source, enabled } = *copied;
                 let mut elements: Vec<model::Element> = match enable {
@@ -79,7 +79,9 @@ impl Boxed {
                 elements.push(model::Element::Statements(vec![Statement::Copy { target, source, done: None }]));
                 let coil = |target| model::Element::Coil { kind: ladder::CoilKind::Plain, target };
                 elements.extend(enabled.map(coil));
-                model::Element::Parallel(Circuit { branches: vec![Branch { from: None, elements, to: None }] })
+                model::Element::Parallel(Circuit {
+                    branches: Box::new([Branch { from: None, elements: elements.into(), to: None }]),
+                })
             }
         }
     }

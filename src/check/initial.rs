@@ -1,6 +1,8 @@
 //! Initial values: constants for what is elementary, and lists for what has parts. It must never make more values than the type
 //! has elements, whatever a repetition says.
 
+use thin_vec::ThinVec;
+
 use super::model::{Initial, PinId, Step, Type, VariableId};
 use super::type_table::single_values;
 use super::{Checker, types};
@@ -43,7 +45,7 @@ impl Checker<'_> {
                 let array = &self.types.arrays[array.index()];
                 let (count, element) = (array.count() as usize, array.element);
                 self.note_initial(count as u64, initial.span)?;
-                let mut elements = Vec::new();
+                let mut elements = ThinVec::new();
                 self.elements(items, element, count, &mut elements, initial.span)?;
                 elements.resize(count, Initial::Default);
                 Some(Initial::Elements(elements))
@@ -78,7 +80,7 @@ impl Checker<'_> {
         items: &[ArrayItem],
         element: Type,
         count: usize,
-        elements: &mut Vec<Initial>,
+        elements: &mut ThinVec<Initial>,
         span: Span,
     ) -> Option<()> {
         for item in items {
@@ -119,8 +121,8 @@ impl Checker<'_> {
         Some(())
     }
 
-    fn members(&mut self, members: &[MemberValue], ty: Type) -> Option<Vec<(Step, Initial)>> {
-        let mut found: Vec<(Step, Initial)> = Vec::with_capacity(members.len());
+    fn members(&mut self, members: &[MemberValue], ty: Type) -> Option<ThinVec<(Step, Initial)>> {
+        let mut found: ThinVec<(Step, Initial)> = ThinVec::with_capacity(members.len());
         let mut whole = true;
         for member in members {
             let Some((step, ty)) = self.initial_member(ty, &member.member.text) else {

@@ -2,10 +2,13 @@
 
 use std::collections::HashMap;
 
+use lean_string::LeanString;
+
 use super::Checker;
 use super::model::{self, RungIndex};
 use super::network::{Power, Walk};
 use super::report::clipped;
+use super::scope::folded;
 use super::spelling::{self, Budget};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ladder::{Branch, ElementKind, Name, Unit};
@@ -14,8 +17,8 @@ use crate::source::Span;
 /// What jumps can name.
 #[derive(Default)]
 pub(super) struct Labels {
-    /// The first rung of each name, by its place among all rungs, and where its name stands.
-    rungs: HashMap<String, (usize, Span)>,
+    /// The first rung of each name, by its place among all rungs of the unit.
+    rungs: HashMap<LeanString, u32>,
     /// For each of all rungs, how many before it run: its place among those that run, or if it is off, the place of the
     /// next that is not.
     running: Vec<u32>,
@@ -28,9 +31,10 @@ impl Labels {
     pub(super) fn of(unit: &Unit) -> Self {
         let mut labels = Self::default();
         let mut running = 0;
-        for (index, rung) in unit.rungs.iter().enumerate() {
+        labels.running.reserve_exact(unit.rungs.len());
+        for (index, rung) in (0..).zip(&unit.rungs) {
             if let Some(name) = &rung.name {
-                labels.rungs.entry(name.key()).or_insert((index, name.span));
+                labels.rungs.entry(folded(&name.text).into()).or_insert(index);
             }
             labels.running.push(running);
             running += u32::from(rung.enabled);
@@ -46,9 +50,14 @@ impl Labels {
         spelling::nearest(name, names, &mut self.budget).map(str::to_owned)
     }
 
-    /// The name of a rung before this one that is called the same.
-    pub(super) fn earlier(&self, name: &Name, index: usize) -> Option<Span> {
-        self.rungs.get(&name.key()).filter(|(first, _)| *first < index).map(|(_, span)| *span)
+    /// The first rung of a name, by its place.
+    fn rung(&self, name: &Name) -> Option<usize> {
+        self.rungs.get(folded(&name.text).as_ref()).map(|rung| *rung as usize)
+    }
+
+    /// The name of a rung of the unit before this one that is called the same.
+    pub(super) fn earlier(&self, unit: &Unit, name: &Name, index: usize) -> Option<Span> {
+        self.rung(name).filter(|first| *first < index).and_then(|first| Some(unit.rungs[first].name.as_ref()?.span))
     }
 }
 
@@ -66,7 +75,7 @@ impl Checker<'_> {
             self.jump_in_pin(span);
         }
         let Some(target) = target else { return Some(model::Element::Return) };
-        let Some((index, defined)) = self.labels.rungs.get(&target.key()).copied() else {
+        let Some(index) = self.labels.rung(target) else {
             let problem =
                 Diagnostic::new(Code::UndeclaredName, target.span, format!("no rung is called `{}`", target.text));
             let drawn = self.drawn();
@@ -82,6 +91,7 @@ impl Checker<'_> {
                 format!("`{name}` stands before this jump: a scan goes through the rungs once, from first to last")
             };
             let problem = Diagnostic::new(Code::BackwardJump, target.span, message);
+            let defined = self.drawn().rungs[index].name.as_ref().map_or(target.span, |name| name.span);
             self.report.push(
                 problem.related(defined, "the rung is here").hint(
                     "the next scan comes to that rung by itself; keep in a variable what it must know until then",

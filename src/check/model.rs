@@ -5,6 +5,9 @@
 
 use std::ops::Range;
 
+use lean_string::LeanString;
+use thin_vec::ThinVec;
+
 use crate::elementary::{Elementary, Value};
 use crate::ladder::functions::Function;
 use crate::ladder::library::StandardBlock;
@@ -14,7 +17,7 @@ use crate::source::Span;
 /// A program that was checked and has no error.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Checked {
-    pub(super) name: String,
+    pub(super) name: LeanString,
     pub(super) arrays: Vec<ArrayType>,
     pub(super) structures: Vec<Structure>,
     pub(super) variables: Vec<Variable>,
@@ -127,7 +130,7 @@ ids! {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Task {
     /// Its name.
-    pub name: String,
+    pub name: LeanString,
     /// Nanoseconds, above 0: it is due in the first round at or after each multiple, the first round included. Without one
     /// it is due in every round.
     pub interval: Option<i64>,
@@ -139,7 +142,7 @@ pub struct Task {
 #[derive(Clone, PartialEq, Debug)]
 pub struct ProgramInstance {
     /// Its name.
-    pub name: String,
+    pub name: LeanString,
     /// The program that it is one of.
     pub unit: UnitId,
     /// The task that it runs in.
@@ -150,7 +153,7 @@ pub struct ProgramInstance {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Unit {
     /// Its name.
-    pub name: String,
+    pub name: LeanString,
     /// What it is.
     pub kind: UnitKind,
     /// Its variables: the declared ones in order, then those that their use declares.
@@ -199,7 +202,7 @@ pub enum UnitKind {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Variable {
     /// Its name, as it was spelled first; an address that was used without a declaration is spelled canonically, as `%IX0.3`.
-    pub name: String,
+    pub name: LeanString,
     /// What it is declared as. An address without a declaration has the class of its area, and so has a `var` at one.
     pub class: VariableClass,
     /// Its type.
@@ -209,7 +212,7 @@ pub struct Variable {
     /// Whether it keeps its value, or a block all of its memory, while the power is off.
     pub retain: bool,
     /// Its address.
-    pub address: Option<Address>,
+    pub address: Option<Box<Address>>,
     /// The earlier variable at the same address and of the same width, whose storage this one shares.
     pub shares: Option<VariableId>,
     /// Its name where it is declared, or first used.
@@ -260,7 +263,7 @@ pub struct Dimension {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Structure {
     /// Its name.
-    pub name: String,
+    pub name: LeanString,
     /// Its members, in order.
     pub fields: Vec<Field>,
 }
@@ -269,7 +272,7 @@ pub struct Structure {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Field {
     /// Its name.
-    pub name: String,
+    pub name: LeanString,
     /// Its type.
     pub ty: Type,
     /// What it starts with, where the variable does not say.
@@ -284,9 +287,9 @@ pub enum Initial {
     /// A value of its type.
     Value(Value),
     /// One for each element, in order.
-    Elements(Vec<Initial>),
+    Elements(ThinVec<Initial>),
     /// For some members of a structure or block instance, each once; the others start with what their declaration says.
-    Members(Vec<(Step, Initial)>),
+    Members(ThinVec<(Step, Initial)>),
 }
 
 impl Initial {
@@ -305,7 +308,7 @@ pub struct Place {
     /// The variable or block instance.
     pub variable: VariableId,
     /// The way from there; empty for all of it.
-    pub path: Vec<Step>,
+    pub path: ThinVec<Step>,
     /// One bit of the (bit string) value, from 0.
     pub bit: Option<u8>,
 }
@@ -313,7 +316,7 @@ pub struct Place {
 impl Place {
     /// All of a variable.
     pub fn of(variable: VariableId) -> Self {
-        Self { variable, path: Vec::new(), bit: None }
+        Self { variable, path: ThinVec::new(), bit: None }
     }
 }
 
@@ -353,9 +356,9 @@ pub enum PinId {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Rung {
     /// Its name, or `rung N` by its place among all rungs of the source, from 1.
-    pub label: String,
+    pub label: LeanString,
     /// What it is for, in the drawer's words.
-    pub title: Option<String>,
+    pub title: Option<LeanString>,
     /// How many nodes its branches name.
     pub nodes: u32,
     /// Its network.
@@ -368,7 +371,7 @@ pub struct Rung {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Circuit {
     /// At least one.
-    pub branches: Vec<Branch>,
+    pub branches: Box<[Branch]>,
 }
 
 /// Elements in series.
@@ -377,7 +380,7 @@ pub struct Branch {
     /// The node that it starts at, every feeder of which stands before; else it starts at the left of its circuit.
     pub from: Option<NodeId>,
     /// In order.
-    pub elements: Vec<Element>,
+    pub elements: Box<[Element]>,
     /// The node that it feeds; else it ends at the right of its circuit.
     pub to: Option<NodeId>,
 }
@@ -400,7 +403,7 @@ pub enum Element {
         target: Place,
     },
     /// Calls a block, or a function in a box of its own.
-    Call(Call),
+    Call(Box<Call>),
     /// Conducts while a BOOL expression is true.
     Condition(Expression),
     /// Writes while it has power. The expression is computed in either case. The power on its right is that on its left;
@@ -409,7 +412,7 @@ pub enum Element {
         /// What is written.
         target: Place,
         /// A value of its type.
-        value: Expression,
+        value: Box<Expression>,
     },
     /// Executes while it has power. The power on its right is that on its left; but FALSE where an index was out of range in
     /// what was executed.
@@ -519,16 +522,16 @@ pub enum ExpressionKind {
         /// Which; it has a result.
         unit: UnitId,
         /// As many as it has inputs; those that are not given have their initial values.
-        arguments: Vec<Option<Expression>>,
+        arguments: ThinVec<Option<Expression>>,
         /// The places that its references stand for, in their order.
-        references: Vec<Place>,
+        references: ThinVec<Place>,
     },
     /// A function of operands of the types that its parameters have.
     Call {
         /// Which.
         function: Function,
         /// Its arguments, in the order of the parameters.
-        arguments: Vec<Expression>,
+        arguments: ThinVec<Expression>,
     },
 }
 

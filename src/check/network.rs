@@ -109,7 +109,7 @@ impl<'p> Checker<'p> {
         let mut rungs = Vec::with_capacity(drawn.rungs.len());
         for (index, rung) in drawn.rungs.iter().enumerate() {
             if let Some(name) = &rung.name
-                && let Some(first) = self.labels.earlier(name, index)
+                && let Some(first) = self.labels.earlier(drawn, name, index)
             {
                 let message = format!("two rungs are called `{}`", name.text);
                 let problem = Diagnostic::new(Code::DuplicateName, name.span, message);
@@ -122,6 +122,7 @@ impl<'p> Checker<'p> {
                 rungs.extend(rung.enabled.then_some(checked));
             }
         }
+        self.labels = Labels::default();
         rungs
     }
 
@@ -147,7 +148,7 @@ impl<'p> Checker<'p> {
             let problem = Diagnostic::new(Code::NeverConducts, barrier, message);
             self.report.push(problem.hint("`rung off` keeps a rung from running"));
         }
-        let label = rung.name.as_ref().map_or_else(|| self.rung_name(unit, index), |name| name.text.clone());
+        let label = rung.name.as_ref().map_or_else(|| self.rung_name(unit, index).into(), |name| name.text.clone());
         model::Rung { label, title: rung.title.clone(), nodes: walk.fed, circuit, span: rung.span }
     }
 
@@ -184,10 +185,10 @@ impl<'p> Checker<'p> {
             if to.is_none() {
                 right = Some(right.map_or(power, |others| others.or(power)));
             }
-            branches.push(model::Branch { from, elements, to });
+            branches.push(model::Branch { from, elements: elements.into_boxed_slice(), to });
         }
         // Where every branch ends at a node there is no power on the right.
-        (model::Circuit { branches }, right.unwrap_or(Power::Never(circuit.span)))
+        (model::Circuit { branches: branches.into_boxed_slice() }, right.unwrap_or(Power::Never(circuit.span)))
     }
 
     /// The node that a branch starts at, and its power.
@@ -280,7 +281,9 @@ impl<'p> Checker<'p> {
             ElementKind::Assignment { target, value } => {
                 walk.effect(left);
                 let assignment = self.assign(target, value).map(|statement| match statement {
-                    model::Statement::Assignment { target, value } => model::Element::Assignment { target, value },
+                    model::Statement::Assignment { target, value } => {
+                        model::Element::Assignment { target, value: Box::new(value) }
+                    }
                     statement => model::Element::Statements(vec![statement]),
                 });
                 (assignment, left)

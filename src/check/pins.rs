@@ -78,7 +78,7 @@ impl Checker<'_> {
         let pins = |ids: &[VariableId], takes: Takes| -> Vec<Pin> {
             let pin = |(place, id): (usize, &VariableId)| {
                 let variable = &self.scope.entry(*id).variable;
-                Pin { name: variable.name.clone(), ty: variable.ty, range: None, takes, place }
+                Pin { name: variable.name.to_string(), ty: variable.ty, range: None, takes, place }
             };
             ids.iter().enumerate().map(pin).collect()
         };

@@ -4,6 +4,8 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
+use lean_string::LeanString;
+
 use super::address::Extent;
 use super::model::{UnitId, Variable, VariableId};
 use super::spelling::{self, Budget};
@@ -33,7 +35,7 @@ pub(super) enum State {
 }
 
 /// [`key`], without a copy where the name is its own key, as most are.
-fn folded(name: &str) -> Cow<'_, str> {
+pub(super) fn folded(name: &str) -> Cow<'_, str> {
     let is_key = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
     if name.bytes().all(is_key) { Cow::Borrowed(name) } else { Cow::Owned(key(name)) }
 }
@@ -42,9 +44,9 @@ fn folded(name: &str) -> Cow<'_, str> {
 #[derive(Default)]
 pub(super) struct Scope {
     entries: Vec<Entry>,
-    globals: HashMap<String, VariableId>,
+    globals: HashMap<LeanString, VariableId>,
     /// The names of each unit.
-    units: Vec<HashMap<String, VariableId>>,
+    units: Vec<HashMap<LeanString, VariableId>>,
     /// The unit whose names count now.
     unit: Option<UnitId>,
     /// The first variable at each address, whose storage later ones share.
@@ -94,7 +96,7 @@ impl Scope {
             Some(unit) => &mut self.units[unit.index()],
             None => &mut self.globals,
         };
-        let first = *names.entry(key(&variable.name)).or_insert(next);
+        let first = *names.entry(folded(&variable.name).into()).or_insert(next);
         if first == next { Ok(self.add_nameless(variable, state)) } else { Err(first) }
     }
 

@@ -193,7 +193,7 @@ impl Checker<'_> {
             Some(unit) => (unit.name.text.clone(), Some(unit.name.span)),
             None => {
                 let structure = self.types.structures.get(callee - self.units.len());
-                (structure.map_or_else(|| "the array".to_owned(), |structure| structure.name.clone()), None)
+                (structure.map_or_else(|| "the array".into(), |structure| structure.name.clone()), None)
             }
         };
         let message = if *caller == callee {

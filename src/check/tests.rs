@@ -7,6 +7,7 @@ mod jumps;
 mod limits;
 mod names;
 mod random;
+mod room;
 mod statements;
 mod structure;
 mod types;

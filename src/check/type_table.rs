@@ -4,6 +4,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use thin_vec::thin_vec;
+
 use super::model::{ArrayType, ArrayTypeId, Dimension, Field, Initial, Structure, StructureId, Type, UnitId};
 use super::spelling::{self, Budget};
 use super::{Checker, types};
@@ -176,7 +178,7 @@ impl Checker<'_> {
             Initial::Default => Initial::Default,
             initial => {
                 self.note_initial(u64::from(count).saturating_mul(single_values(&initial)), reference.span)?;
-                Initial::Elements(vec![initial; count as usize])
+                Initial::Elements(thin_vec![initial; count as usize])
             }
         };
         let array = self.array(ArrayType { dimensions, element });
@@ -321,8 +323,8 @@ impl Checker<'_> {
         match ty {
             Type::Elementary(ty) => ty.name().to_owned(),
             Type::Block(block) => block.name().to_owned(),
-            Type::Unit(unit) => self.program.units[unit.index()].name.text.clone(),
-            Type::Structure(structure) => self.types.structures[structure.index()].name.clone(),
+            Type::Unit(unit) => self.program.units[unit.index()].name.text.to_string(),
+            Type::Structure(structure) => self.types.structures[structure.index()].name.to_string(),
             Type::Array(array) => {
                 let array = &self.types.arrays[array.index()];
                 let bounds = array.dimensions.iter().map(|dimension| {

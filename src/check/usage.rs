@@ -4,6 +4,8 @@
 
 use std::collections::HashMap;
 
+use lean_string::LeanString;
+
 use super::Checker;
 use super::model::{Input, Place, VariableId, Wire};
 use super::network::Walk;
@@ -31,7 +33,7 @@ pub(super) struct Usage {
 
 /// What tells two places apart: the variable that has the storage, the way from there, and the bit. Places with a computed index
 /// have none.
-type Key = (VariableId, String, Option<u8>);
+type Key = (VariableId, LeanString, Option<u8>);
 
 struct Call {
     instance: VariableId,
@@ -39,8 +41,14 @@ struct Call {
     rung: RungPlace,
 }
 
-/// A rung: its unit, and its place there.
-type RungPlace = (usize, usize);
+/// A rung: its unit, and its place there. There is one of these for each coil.
+type RungPlace = (u32, u32);
+
+fn place_of(walk: &Walk) -> RungPlace {
+    // A rung takes more than a byte of a source, so that 32 bits are enough.
+    let number = |index: usize| u32::try_from(index).unwrap_or(u32::MAX);
+    (number(walk.unit), number(walk.rung))
+}
 
 struct Coil {
     variable: VariableId,
@@ -56,7 +64,7 @@ impl Checker<'_> {
             && let Some(key) = self.key(target)
         {
             let latches = matches!(kind, CoilKind::Set | CoilKind::Reset);
-            let coil = Coil { variable: target.variable, span, rung: (walk.unit, walk.rung), latches };
+            let coil = Coil { variable: target.variable, span, rung: place_of(walk), latches };
             self.usage.coils.push((key, coil));
         }
     }
@@ -66,7 +74,7 @@ impl Checker<'_> {
             && !walk.conditional
             && let Some(key) = self.key(instance)
         {
-            self.usage.calls.push((key, Call { instance: instance.variable, span, rung: (walk.unit, walk.rung) }));
+            self.usage.calls.push((key, Call { instance: instance.variable, span, rung: place_of(walk) }));
         }
     }
 
@@ -103,7 +111,7 @@ impl Checker<'_> {
         if !is_constant(place) {
             return None;
         }
-        let path = if place.path.is_empty() { String::new() } else { format!("{:?}", place.path) };
+        let path = if place.path.is_empty() { LeanString::new() } else { format!("{:?}", place.path).into() };
         Some((self.scope.storage(place.variable), path, place.bit))
     }
 
@@ -160,6 +168,7 @@ impl Checker<'_> {
 
     /// A rung by its name or number, and its unit where there are several.
     fn rung_in_unit(&self, (unit, rung): RungPlace) -> String {
+        let (unit, rung) = (unit as usize, rung as usize);
         let name = self.rung_name(unit, rung);
         match self.program.units.as_slice() {
             [_] => name,

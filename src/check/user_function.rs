@@ -70,8 +70,8 @@ impl Checker<'_> {
             // That was reported where it is declared.
             _ => return None,
         };
-        let references: Vec<Place> = places.into_iter().collect::<Option<_>>()?;
-        whole.then_some(Expression { ty, kind: ExpressionKind::UserCall { unit, arguments: given, references } })
+        let references = places.into_iter().collect::<Option<_>>()?;
+        whole.then_some(Expression { ty, kind: ExpressionKind::UserCall { unit, arguments: given.into(), references } })
     }
 
     /// What a call without names gives, in the order of the declarations.

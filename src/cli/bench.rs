@@ -17,6 +17,7 @@ use std::time::Duration;
 
 use super::{Failure, Missing, duration, load_checked, print, report, write_whole};
 use crate::diagnostic::Code;
+use crate::load::Loaded;
 use crate::logic::Program;
 use crate::{lower, opt};
 use engine::{Engine, Subject};
@@ -67,9 +68,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     for path in &arguments.files {
-        let (loaded, checked) = load_checked(path, arguments.missing)?;
-        let program = lower::lower(&checked, &loaded.source, None)
+        let (Loaded { source, .. }, checked) = load_checked(path, arguments.missing)?;
+        let program = lower::lower(&checked, &source, None)
             .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
+        drop(checked);
         measured.push(measure(arguments, program)?);
     }
     let mut text = table::text(&measured);

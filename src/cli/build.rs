@@ -15,6 +15,7 @@ use crate::engine::clif::{self, CompileError};
 use crate::engine::target::{BadTarget, Target};
 use crate::engine::{disassemble, object, report};
 use crate::interface::{DEFAULT_PREFIX, DEFAULT_TICK, Interface};
+use crate::load::Loaded;
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
@@ -97,24 +98,25 @@ fn build(arguments: &Arguments, passes: &[Pass]) -> Result<(), Failure> {
     let interface = Interface::new(&arguments.prefix, arguments.tick.unwrap_or(DEFAULT_TICK))
         .map_err(|refused| Failure::hinted(refused.code(), refused.to_string(), refused.hint()))?;
     let target = arguments.target()?;
-    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
+    let (Loaded { source, program: drawing, .. }, checked) = load_checked(&arguments.file, arguments.missing)?;
+    let notes = notes::of(&drawing, &source);
+    drop(drawing);
     let earlier = arguments.previous_map.as_deref().map(read_map).transpose()?;
-    let program = lower(&checked, &loaded.source, earlier.as_ref())
+    let program = lower(&checked, &source, earlier.as_ref())
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
+    drop(checked);
     let program = if arguments.verify {
-        let (program, said) = verify::optimised(program, passes, &loaded.source)?;
+        let (program, said) = verify::optimised(program, passes, &source)?;
         super::report(&said);
         program
     } else {
         passes.iter().fold(program, |program, pass| (pass.run)(program))
     };
-    let place = |line, name: &str| place_of(&loaded.source, line, name);
+    let place = |line, name: &str| place_of(&source, line, name);
     let emit = arguments.emit();
     if emit == Some(Emit::C) || arguments.header.is_some() {
-        emit::validate(&program, &interface, &place)
-            .map_err(|problems| Failure::diagnostics(&loaded.source, &problems))?;
+        emit::validate(&program, &interface, &place).map_err(|problems| Failure::diagnostics(&source, &problems))?;
     }
-    let notes = notes::of(&loaded.program, &loaded.source);
     let built = Built { program: &program, interface: &interface, target: target.as_ref(), notes: &notes };
     // All outputs are made before the first is written.
     let output = emit.map(|emit| built.emitted(emit)).transpose()?;
@@ -128,7 +130,7 @@ fn build(arguments: &Arguments, passes: &[Pass]) -> Result<(), Failure> {
         write_whole(path, text.as_bytes())?;
     }
     if let Some(path) = &arguments.map {
-        write_whole(path, map::write_map(&program, loaded.source.name()).as_bytes())?;
+        write_whole(path, map::write_map(&program, source.name()).as_bytes())?;
     }
     if let Some(output) = output {
         write_whole(&arguments.output, &output)?;

@@ -28,6 +28,7 @@ use crate::logic::Program;
 use crate::logic::image::Slot;
 use crate::lower::lower;
 use crate::opt::optimise;
+use crate::source::Source;
 use engine::{Engine, Kind};
 use machine::{Lost, Machine, Outcome, Timing};
 use points::Points;
@@ -78,9 +79,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
+    let (Loaded { source, .. }, checked) = load_checked(&arguments.file, arguments.missing)?;
     let began = Instant::now();
-    let lowered = lower(&checked, &loaded.source, None)
+    let lowered = lower(&checked, &source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image would be larger than 1 GiB"))?;
     let program = optimise(lowered);
     let cycle = arguments.cycle.unwrap_or_else(|| tasks::cycle(&program));
@@ -131,7 +132,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Stopped, message))
         }
         Err(Lost::Panicked) => Err(Failure::new(Code::Stopped, "the scan panicked; the outputs are off")),
-        Ok(outcome) => ended(outcome, arguments, &loaded, &program).and(watched),
+        Ok(outcome) => ended(outcome, arguments, &source, &program).and(watched),
     }
 }
 
@@ -225,7 +226,7 @@ fn summary(statistics: &Statistics, watchdog: u64, program: &Program, left_out: 
 }
 
 /// What is to be said of a run that ended.
-fn ended(outcome: Outcome<Engine>, arguments: &Arguments, loaded: &Loaded, program: &Program) -> Result<(), Failure> {
+fn ended(outcome: Outcome<Engine>, arguments: &Arguments, source: &Source, program: &Program) -> Result<(), Failure> {
     let fault = match outcome.end {
         End::Asked(Ok(())) => return Ok(()),
         End::NoHeartbeat => {
@@ -247,7 +248,7 @@ fn ended(outcome: Outcome<Engine>, arguments: &Arguments, loaded: &Loaded, progr
                 return Err(Failure::new(Code::EnginesDiffer, "the engines differ; the outputs are off"));
             };
             let path = arguments.replay.clone().unwrap_or_else(|| default_replay(&arguments.file));
-            Err(difference::leave(&difference, replay, (&arguments.file, &loaded.source), &path)?)
+            Err(difference::leave(&difference, replay, (&arguments.file, source), &path)?)
         }
         Fault::AlreadyStopped => Err(Failure::new(Code::Stopped, "the controller had stopped before")),
     }

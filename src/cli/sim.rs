@@ -18,6 +18,7 @@ use crate::engine::both::Difference;
 use crate::engine::elide::Elided;
 use crate::engine::interp::Interpreter;
 use crate::engine::jit::Jit;
+use crate::load::Loaded;
 use crate::logic::{Layout, Program};
 use crate::lower::lower;
 use crate::opt::optimise;
@@ -78,9 +79,10 @@ enum Engine {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (loaded, checked) = load_checked(&arguments.file, arguments.missing)?;
-    let mut program = lower(&checked, &loaded.source, None)
+    let (Loaded { source, .. }, checked) = load_checked(&arguments.file, arguments.missing)?;
+    let mut program = lower(&checked, &source, None)
         .map_err(|_| Failure::new(Code::ImageTooLarge, "the process image is too large"))?;
+    drop(checked);
     // The image as a replay and its layout's hash know it.
     let plain = program.layout.clone();
     let assertions = (arguments.many.assertions.iter())
@@ -96,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(names) => Signal::select(&program.layout, names)
             .map_err(|name| Failure::new(Code::UndeclaredName, format!("there is no variable `{name}` to trace")))?,
     };
-    let course = Course::read(arguments, &loaded.source, &program, &plain)?;
+    let course = Course::read(arguments, &source, &program, &plain)?;
     if let (Some(lanes), Course::Stimulated(stimuli, schedule)) = (arguments.many.lanes, &course) {
         let stop = catch_interrupts()?;
         let run = lanes::Run {

@@ -419,10 +419,10 @@ fn literal(literal: &Literal) -> String {
     match literal {
         Literal::Bool(value) => if *value { "TRUE" } else { "FALSE" }.to_owned(),
         Literal::Integer { value, base, ty } => match base {
-            2 => format!("{}2#{value:b}", prefix(ty)),
-            8 => format!("{}8#{value:o}", prefix(ty)),
-            16 => format!("{}16#{value:X}", prefix(ty)),
-            _ => format!("{}{value}", prefix(ty)),
+            2 => format!("{}2#{:b}", prefix(ty), value.get()),
+            8 => format!("{}8#{:o}", prefix(ty), value.get()),
+            16 => format!("{}16#{:X}", prefix(ty), value.get()),
+            _ => format!("{}{}", prefix(ty), value.get()),
         },
         Literal::Real { value, ty } => {
             let digits = format!("{value:?}");
@@ -465,6 +465,8 @@ fn time(nanoseconds: i64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use thin_vec::ThinVec;
+
     use super::*;
     use crate::ladder::Name;
     use crate::source::Span;
@@ -475,7 +477,7 @@ mod tests {
 
     fn read(name: &str) -> Expression {
         let root = Root::Name(Name::new(name, Span::default()));
-        expression_of(ExpressionKind::Read(Reference { root, steps: vec![], span: Span::default() }))
+        expression_of(ExpressionKind::Read(Reference { root, steps: ThinVec::new(), span: Span::default() }))
     }
 
     fn binary(operator: BinaryOperator, left: Expression, right: Expression) -> Expression {
@@ -504,8 +506,8 @@ mod tests {
     #[test]
     fn literals_are_written_in_their_base_and_unit() {
         use crate::elementary::Elementary::{Int, Real};
-        assert_eq!(literal(&Literal::Integer { value: 255, base: 16, ty: Some(Int) }), "INT#16#FF");
-        assert_eq!(literal(&Literal::Integer { value: 5, base: 2, ty: None }), "2#101");
+        assert_eq!(literal(&Literal::Integer { value: 255.into(), base: 16, ty: Some(Int) }), "INT#16#FF");
+        assert_eq!(literal(&Literal::Integer { value: 5.into(), base: 2, ty: None }), "2#101");
         assert_eq!(literal(&Literal::Real { value: 1e300, ty: Some(Real) }), "REAL#1.0e300");
         assert_eq!(literal(&Literal::Real { value: 2.5, ty: None }), "2.5");
         assert_eq!(literal(&Literal::Time(90_000_000_000)), "T#1m30s");

@@ -73,13 +73,13 @@ fn leave_unless(trigger: &Expression, span: Span) -> Rung {
     let rises = element(ElementKind::Contact { kind: ContactKind::Rising, operand: trigger.clone() });
     let inner = Circuit { branches: vec![branch(vec![rises])], span };
     let argument = Argument { pin: Name::new("IN", span), wire: Wire::Circuit(inner), span };
-    let not = ElementKind::Block(BlockCall {
+    let not = ElementKind::Block(Box::new(BlockCall {
         instance: Reference::of_name(Name::new("NOT", span)),
         type_name: None,
         arguments: vec![argument],
         power_output: Some(Name::new("OUT", span)),
-    });
+    }));
     let elements = vec![element(not), element(ElementKind::Return)];
     let circuit = Circuit { branches: vec![branch(elements)], span };
-    Rung { name: None, title: Some("runs at an event".to_owned()), enabled: true, circuit, span }
+    Rung { name: None, title: Some("runs at an event".into()), enabled: true, circuit, span }
 }

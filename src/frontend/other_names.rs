@@ -51,7 +51,7 @@ impl Change for Speller<'_> {
             if let Step::Member(member) = step
                 && let Some(pin) = block.input_called(&member.text)
             {
-                pin.clone_into(&mut member.text);
+                member.text = pin.into();
             }
         }
     }
@@ -62,7 +62,7 @@ impl Change for Speller<'_> {
         let Some(block) = named.unwrap_or_else(|| self.block(&call.instance.root)) else { return };
         for argument in &mut call.arguments {
             if let Some(pin) = block.input_called(&argument.pin.text) {
-                pin.clone_into(&mut argument.pin.text);
+                argument.pin.text = pin.into();
             }
         }
     }

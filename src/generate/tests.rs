@@ -52,7 +52,7 @@ fn operand_name(operand: &Expression) -> String {
 fn root(reference: &Reference) -> String {
     assert_eq!(reference.steps, Vec::<Step>::new());
     match &reference.root {
-        Root::Name(name) => name.text.clone(),
+        Root::Name(name) => name.text.to_string(),
         Root::Address(address) => panic!("{address:?}"),
     }
 }

@@ -1,5 +1,7 @@
 //! Expressions as written: what stands in braces, at pins and behind `:=` in declarations.
 
+use thin_vec::ThinVec;
+
 use super::{Address, Name};
 use crate::elementary::Elementary;
 use crate::source::Span;
@@ -29,7 +31,7 @@ pub enum ExpressionKind {
         /// Which.
         function: Name,
         /// What it gets, in the order written.
-        arguments: Vec<FunctionArgument>,
+        arguments: ThinVec<FunctionArgument>,
     },
     /// `[1, 2, 8(0)]`: the initial value of an array, in order of its elements.
     Array(Vec<ArrayItem>),
@@ -72,7 +74,7 @@ pub enum Literal {
     /// `12`, `16#FF`, `INT#5`.
     Integer {
         /// Its magnitude; a sign is a unary operator.
-        value: u128,
+        value: Magnitude,
         /// The base in which it was written: 2, 8, 10 or 16.
         base: u8,
         /// The type before the `#`.
@@ -90,10 +92,32 @@ pub enum Literal {
     /// `colour#red`: a value of an enumeration.
     Enumerated {
         /// The type before the `#`.
-        ty: Name,
+        ty: Box<Name>,
         /// The value's name.
-        value: Name,
+        value: Box<Name>,
     },
+}
+
+/// The magnitude of a number as written. It is as a `u128`, but aligned like other numbers: an expression that holds one
+/// would take a third more room, and programs have millions.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
+pub struct Magnitude {
+    high: u64,
+    low: u64,
+}
+
+impl Magnitude {
+    /// The number.
+    pub const fn get(self) -> u128 {
+        (self.high as u128) << 64 | self.low as u128
+    }
+}
+
+impl From<u128> for Magnitude {
+    #[expect(clippy::cast_possible_truncation, reason = "each half is taken")]
+    fn from(number: u128) -> Self {
+        Self { high: (number >> 64) as u64, low: number as u64 }
+    }
 }
 
 /// Something that can be read, and perhaps written.
@@ -102,7 +126,7 @@ pub struct Reference {
     /// Where it starts.
     pub root: Root,
     /// The way from there.
-    pub steps: Vec<Step>,
+    pub steps: ThinVec<Step>,
     /// All of it.
     pub span: Span,
 }
@@ -113,7 +137,7 @@ pub enum Root {
     /// A declared name.
     Name(Name),
     /// An address without a declaration.
-    Address(Address),
+    Address(Box<Address>),
 }
 
 /// One step of a reference.
@@ -131,7 +155,7 @@ impl Reference {
     /// A reference that is a name and nothing more.
     pub fn of_name(name: Name) -> Self {
         let span = name.span;
-        Self { root: Root::Name(name), steps: Vec::new(), span }
+        Self { root: Root::Name(name), steps: ThinVec::new(), span }
     }
 
     /// The name, if it is nothing more.

@@ -14,10 +14,6 @@ pub struct Statement {
 
 /// What a statement is (IEC 61131-3, 7.3.3). WHILE and REPEAT are none: a scan is a straight line.
 #[derive(Clone, PartialEq, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "the largest is a FOR, beside which a box would save little: it holds three expressions"
-)]
 pub enum StatementKind {
     /// `x := 1;`
     Assignment {

@@ -1,5 +1,7 @@
 //! Types as written: at declarations, and in declarations of their own.
 
+use thin_vec::ThinVec;
+
 use super::{Expression, Name};
 use crate::source::Span;
 
@@ -7,7 +9,7 @@ use crate::source::Span;
 #[derive(Clone, PartialEq, Debug)]
 pub struct TypeReference {
     /// `array [0..9, 1..3] of`: the dimensions; none where it is no array.
-    pub dimensions: Vec<Dimension>,
+    pub dimensions: ThinVec<Dimension>,
     /// The type, or that of the elements.
     pub name: Name,
     /// All of it.
@@ -18,7 +20,7 @@ impl TypeReference {
     /// A type that is a name and nothing more.
     pub fn of_name(name: Name) -> Self {
         let span = name.span;
-        Self { dimensions: Vec::new(), name, span }
+        Self { dimensions: ThinVec::new(), name, span }
     }
 }
 

@@ -32,6 +32,11 @@ impl Builder {
         Self { program, chunk_sections: 0 }
     }
 
+    /// Makes room for so many instructions. Growing step by step would copy them, and hold them twice at the end.
+    pub fn reserve(&mut self, instructions: usize) {
+        self.program.instructions.reserve(instructions);
+    }
+
     /// The image that it is built over.
     pub fn layout(&self) -> &Layout {
         &self.program.layout

@@ -135,7 +135,7 @@ fn same(observed: &Observed, name: &str) -> bool {
 /// A reference's name as a trace has it, and the bit that it reads of that, if it does.
 fn whole_name(reference: &Reference) -> Option<(String, Option<Step>)> {
     let Root::Name(name) = &reference.root else { return None };
-    let mut text = name.text.clone();
+    let mut text = name.text.to_string();
     let (mut steps, mut bit) = (&reference.steps[..], None);
     if let [before @ .., last @ Step::Bit(..)] = steps {
         (steps, bit) = (before, Some(last.clone()));
@@ -156,7 +156,7 @@ fn whole_name(reference: &Reference) -> Option<(String, Option<Step>)> {
 /// A constant index as a name has it.
 fn number(index: &Expression) -> Option<String> {
     match &index.kind {
-        ExpressionKind::Literal(Literal::Integer { value, .. }) => Some(value.to_string()),
+        ExpressionKind::Literal(Literal::Integer { value, .. }) => Some(value.get().to_string()),
         ExpressionKind::Unary(UnaryOperator::Negate, inner) => Some(format!("-{}", number(inner)?)),
         _ => None,
     }

@@ -148,12 +148,12 @@ fn parallel_branches_or_and_all_of_them_run() {
 
 #[test]
 fn a_bridge_of_nodes_conducts_along_every_path() {
-    let to = |node: &str, elements| Branch { to: Some(name(node)), ..branch(elements) };
-    let from = |node: &str, elements| Branch { from: Some(name(node)), ..branch(elements) };
+    let to = |node: &str, elements| Branch { to: Some(Box::new(name(node))), ..branch(elements) };
+    let from = |node: &str, elements| Branch { from: Some(Box::new(name(node))), ..branch(elements) };
     let branches = vec![
         to("left", vec![contact("a")]),
         to("right", vec![contact("b")]),
-        Branch { from: Some(name("left")), ..to("right", vec![contact_of(ContactKind::Closed, "b")]) },
+        Branch { from: Some(Box::new(name("left"))), ..to("right", vec![contact_of(ContactKind::Closed, "b")]) },
         from("right", vec![coil(CoilKind::Plain, "x")]),
         from("left", vec![contact("b")]),
     ];
@@ -313,7 +313,7 @@ fn integers_of(program: &Program, watched: &str, a: &str, b: &str) -> Vec<i128> 
 }
 
 fn assign(target: &str, value: Expression) -> Element {
-    element(ElementKind::Assignment { target: reference(target), value })
+    element(ElementKind::Assignment { target: reference(target), value: Box::new(value) })
 }
 
 fn condition(value: Expression) -> Element {

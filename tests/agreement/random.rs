@@ -291,7 +291,7 @@ fn writers(checked: &Checked, name: &str) -> Vec<String> {
         });
         found
     });
-    rungs.map(|rung| rung.label.clone()).collect()
+    rungs.map(|rung| rung.label.to_string()).collect()
 }
 
 fn elements(circuit: &Circuit, visit: &mut impl FnMut(&Element)) {

@@ -15,7 +15,7 @@ pub(crate) fn name(text: &str) -> Name {
 }
 
 pub(crate) fn reference(text: &str) -> Reference {
-    Reference { root: Root::Name(name(text)), steps: vec![], span: NOWHERE }
+    Reference { root: Root::Name(name(text)), steps: [].into(), span: NOWHERE }
 }
 
 pub(crate) fn expression(kind: ExpressionKind) -> Expression {
@@ -27,7 +27,7 @@ pub(crate) fn read(text: &str) -> Expression {
 }
 
 pub(crate) fn number(value: u128) -> Expression {
-    expression(ExpressionKind::Literal(Literal::Integer { value, base: 10, ty: None }))
+    expression(ExpressionKind::Literal(Literal::Integer { value: value.into(), base: 10, ty: None }))
 }
 
 pub(crate) fn seconds(value: i64) -> Expression {
@@ -35,7 +35,7 @@ pub(crate) fn seconds(value: i64) -> Expression {
 }
 
 pub(crate) fn integer(ty: Elementary, value: u128) -> Expression {
-    expression(ExpressionKind::Literal(Literal::Integer { value, base: 10, ty: Some(ty) }))
+    expression(ExpressionKind::Literal(Literal::Integer { value: value.into(), base: 10, ty: Some(ty) }))
 }
 
 pub(crate) fn binary(operator: BinaryOperator, left: Expression, right: Expression) -> Expression {
@@ -71,7 +71,7 @@ pub(crate) fn condition(value: Expression) -> Element {
 }
 
 pub(crate) fn assignment(target: &str, value: Expression) -> Element {
-    element(ElementKind::Assignment { target: reference(target), value })
+    element(ElementKind::Assignment { target: reference(target), value: Box::new(value) })
 }
 
 pub(crate) fn statements(list: Vec<Statement>) -> Element {
@@ -99,7 +99,7 @@ pub(crate) fn branch(elements: Vec<Element>) -> Branch {
 /// A branch that starts and ends at nodes; an empty name for none.
 pub(crate) fn node_branch(from: &str, elements: Vec<Element>, to: &str) -> Branch {
     let node = |text: &str| (!text.is_empty()).then(|| name(text));
-    Branch { from: node(from), elements, to: node(to), span: NOWHERE }
+    Branch { from: node(from).map(Box::new), elements, to: node(to).map(Box::new), span: NOWHERE }
 }
 
 pub(crate) fn circuit(branches: Vec<Branch>) -> Circuit {
@@ -117,12 +117,12 @@ pub(crate) fn block(instance: &str, ty: &str, arguments: Vec<(&str, Wire)>) -> E
 /// A block with a chosen power output; empty texts for no type and no choice.
 pub(crate) fn chosen(instance: &str, ty: &str, arguments: Vec<(&str, Wire)>, output: &str) -> Element {
     let some = |text: &str| (!text.is_empty()).then(|| name(text));
-    element(ElementKind::Block(BlockCall {
+    element(ElementKind::Block(Box::new(BlockCall {
         instance: reference(instance),
         type_name: some(ty),
         arguments: arguments.into_iter().map(|(pin, wire)| Argument { pin: name(pin), wire, span: NOWHERE }).collect(),
         power_output: some(output),
-    }))
+    })))
 }
 
 pub(crate) fn value(value: Expression) -> Wire {
@@ -145,7 +145,7 @@ pub(crate) fn rung(text: &str, title: &str, elements: Vec<Element>) -> Rung {
 pub(crate) fn rung_of(text: &str, title: &str, branches: Vec<Branch>) -> Rung {
     Rung {
         name: (!text.is_empty()).then(|| name(text)),
-        title: (!title.is_empty()).then(|| title.to_owned()),
+        title: (!title.is_empty()).then(|| title.into()),
         enabled: true,
         circuit: circuit(branches),
         span: NOWHERE,

@@ -28,15 +28,27 @@ fn golden_of(file: &str, width: usize, program: &Program) {
 
 fn pump_station() -> Program {
     let variables = vec![
-        rung::ladder::Variable { address: address(Area::Input, &[0, 0]), ..variable(VariableClass::Input, "start") },
-        rung::ladder::Variable { address: address(Area::Input, &[0, 1]), ..variable(VariableClass::Input, "stop") },
+        rung::ladder::Variable {
+            address: address(Area::Input, &[0, 0]).map(Box::new),
+            ..variable(VariableClass::Input, "start")
+        },
+        rung::ladder::Variable {
+            address: address(Area::Input, &[0, 1]).map(Box::new),
+            ..variable(VariableClass::Input, "stop")
+        },
         variable(VariableClass::Input, "low_level"),
-        rung::ladder::Variable { address: address(Area::Output, &[0, 0]), ..variable(VariableClass::Output, "pump") },
+        rung::ladder::Variable {
+            address: address(Area::Output, &[0, 0]).map(Box::new),
+            ..variable(VariableClass::Output, "pump")
+        },
         variable(VariableClass::Output, "alarm"),
-        rung::ladder::Variable { initial: Some(seconds(5)), ..typed(VariableClass::Constant, "warm", "TIME") },
+        rung::ladder::Variable {
+            initial: Some(Box::new(seconds(5))),
+            ..typed(VariableClass::Constant, "warm", "TIME")
+        },
         rung::ladder::Variable {
             retain: true,
-            initial: Some(integer(Elementary::Int, 0)),
+            initial: Some(Box::new(integer(Elementary::Int, 0))),
             ..typed(VariableClass::Memory, "runs", "INT")
         },
     ];

@@ -90,7 +90,7 @@ fn names(circuit: &Circuit, found: &mut Vec<String>) {
                     }
                 }
                 ElementKind::Parallel(inner) => names(inner, found),
-                ElementKind::Jump { target } => found.push(target.text.clone()),
+                ElementKind::Jump { target } => found.push(target.text.to_string()),
                 ElementKind::Return => {}
                 ElementKind::Statements(statements) => statement_names(statements, found),
                 ElementKind::Block(call) => {
@@ -124,7 +124,7 @@ fn read_name(kind: &ExpressionKind, found: &mut Vec<String>) {
     if let ExpressionKind::Read(reference) = kind
         && let rung::ladder::Root::Name(name) = &reference.root
     {
-        found.push(name.text.clone());
+        found.push(name.text.to_string());
     }
 }
 

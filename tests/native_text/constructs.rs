@@ -103,7 +103,7 @@ fn briefs<'a>(kinds: impl Iterator<Item = &'a ElementKind>) -> String {
 
 fn reference_brief(reference: &Reference) -> String {
     let mut text = match &reference.root {
-        Root::Name(name) => name.text.clone(),
+        Root::Name(name) => name.text.to_string(),
         Root::Address(address) => format!("{:?}{:?}{:?}", address.area, address.width, address.numbers),
     };
     for step in &reference.steps {
@@ -183,7 +183,7 @@ fn a_block_keeps_its_wires_in_order() {
     let Wire::Circuit(circuit) = reset.wire else { panic!() };
     assert_eq!(brief(&ElementKind::Parallel(circuit)), "[Open a, Closed b|Open c]");
     let Wire::Value(Expression { kind: ExpressionKind::Literal(value), .. }) = preset.wire else { panic!() };
-    assert_eq!(value, Literal::Integer { value: 10, base: 10, ty: None });
+    assert_eq!(value, Literal::Integer { value: 10.into(), base: 10, ty: None });
     let Wire::Output(target) = count.wire else { panic!() };
     assert_eq!(reference_brief(&target), "w#3");
 }
@@ -198,7 +198,7 @@ fn literal(text: &str) -> Literal {
 
 #[test]
 fn every_form_of_literal() {
-    let integer = |value, base, ty| Literal::Integer { value, base, ty };
+    let integer = |value: u128, base, ty| Literal::Integer { value: value.into(), base, ty };
     let real = |value, ty| Literal::Real { value, ty };
     let cases = [
         ("12", integer(12, 10, None)),
@@ -242,7 +242,7 @@ fn a_sign_behind_a_type_is_an_operator() {
     else {
         panic!()
     };
-    let expected = Literal::Integer { value: 5, base: 10, ty: Some(Elementary::Int) };
+    let expected = Literal::Integer { value: 5.into(), base: 10, ty: Some(Elementary::Int) };
     assert_eq!(operand.kind, ExpressionKind::Literal(expected));
 }
 
@@ -256,7 +256,7 @@ fn grouped(expression: &Expression) -> String {
             format!("({} {} {})", grouped(left), operator.symbol(), grouped(right))
         }
         ExpressionKind::Literal(Literal::Enumerated { ty, value }) => format!("{}#{}", ty.text, value.text),
-        ExpressionKind::Literal(Literal::Integer { value, base: 10, ty: None }) => value.to_string(),
+        ExpressionKind::Literal(Literal::Integer { value, base: 10, ty: None }) => value.get().to_string(),
         ExpressionKind::Literal(literal) => format!("{literal:?}"),
         ExpressionKind::Call { function, arguments } => {
             let argument = |argument: &FunctionArgument| match &argument.parameter {
@@ -372,7 +372,7 @@ fn types_and_initial_values() {
             "x: REAL := Real { value: 1.5, ty: None };y: REAL := Real { value: 1.5, ty: None };z: c := c#red;",
         ]
     );
-    let initial = program.units[0].variables[0].initial.as_ref().map(grouped);
+    let initial = program.units[0].variables[0].initial.as_deref().map(grouped);
     assert_eq!(initial.as_deref(), Some("(x: Real { value: 1.0, ty: None }, z: c#red)"));
 }
 
@@ -473,7 +473,7 @@ fn declarations_take_their_clauses_in_any_order() {
         .map(|variable| {
             let type_name = variable.ty.as_ref().map_or("", |ty| &ty.name.text);
             let address = variable.address.as_ref().map(|address| &address.numbers);
-            let initial = variable.initial.as_ref().map_or(String::new(), grouped);
+            let initial = variable.initial.as_deref().map_or(String::new(), grouped);
             format!("{:?} {}:{type_name} {address:?} {initial} {}", variable.class, variable.name.text, variable.retain)
         })
         .collect();
@@ -536,7 +536,7 @@ fn branches_start_and_end_at_nodes() {
         .branches
         .iter()
         .map(|branch| {
-            let node = |name: &Option<Name>| name.as_ref().map_or(String::new(), |name| name.text.clone());
+            let node = |name: &Option<Box<Name>>| name.as_ref().map_or(String::new(), |name| name.text.to_string());
             (node(&branch.from), branch.elements.len(), node(&branch.to))
         })
         .collect();

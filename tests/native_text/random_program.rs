@@ -30,14 +30,14 @@ fn address() -> BoxedStrategy<Address> {
 }
 
 fn reference() -> BoxedStrategy<Reference> {
-    let root = prop_oneof![4 => name().prop_map(Root::Name), 1 => address().prop_map(Root::Address)];
+    let root = prop_oneof![4 => name().prop_map(Root::Name), 1 => address().prop_map(|address| Root::Address(Box::new(address)))];
     let step = prop_oneof![
         2 => name().prop_map(Step::Member),
         2 => any::<u8>().prop_map(|bit| Step::Bit(bit, NOWHERE)),
         1 => vec(index(), 1..3).prop_map(|indices| Step::Index(indices, NOWHERE)),
     ];
     (root, prop_oneof![3 => Just(Vec::new()), 1 => vec(step, 1..3)])
-        .prop_map(|(root, steps)| Reference { root, steps, span: NOWHERE })
+        .prop_map(|(root, steps)| Reference { root, steps: steps.into(), span: NOWHERE })
         .boxed()
 }
 
@@ -79,11 +79,11 @@ fn literal() -> BoxedStrategy<Literal> {
     );
     prop_oneof![
         any::<bool>().prop_map(Literal::Bool),
-        integer.prop_map(|(value, base, ty)| Literal::Integer { value, base, ty }),
+        integer.prop_map(|(value, base, ty)| Literal::Integer { value: value.into(), base, ty }),
         real.prop_filter("finite", |(value, _)| value.is_finite())
             .prop_map(|(value, ty)| Literal::Real { value: value.abs(), ty }),
         any::<i64>().prop_map(Literal::Time),
-        (name(), name()).prop_map(|(ty, value)| Literal::Enumerated { ty, value }),
+        (name(), name()).prop_map(|(ty, value)| Literal::Enumerated { ty: Box::new(ty), value: Box::new(value) }),
         (-100_000i64..100_000).prop_map(|milliseconds| Literal::Time(milliseconds * 1_000_000)),
     ]
     .boxed()
@@ -175,7 +175,7 @@ fn simple_element() -> BoxedStrategy<ElementKind> {
         }),
         2 => (prop::sample::select(coil), reference()).prop_map(|(kind, target)| ElementKind::Coil { kind, target }),
         1 => expression().prop_map(ElementKind::Condition),
-        1 => (reference(), expression()).prop_map(|(target, value)| ElementKind::Assignment { target, value }),
+        1 => (reference(), expression()).prop_map(|(target, value)| ElementKind::Assignment { target, value: Box::new(value) }),
         1 => vec(statement(), 0..4).prop_map(ElementKind::Statements),
         1 => name().prop_map(|target| ElementKind::Jump { target }),
         1 => Just(ElementKind::Return),
@@ -187,9 +187,9 @@ fn circuit_of(element: impl Strategy<Value = ElementKind> + Clone) -> impl Strat
     let element = element.prop_map(|kind| Element { kind, span: NOWHERE });
     let node = || prop_oneof![8 => Just(None), 1 => name().prop_map(Some)];
     let branch = (node(), vec(element, 0..5), node()).prop_map(|(from, elements, to)| Branch {
-        from,
+        from: from.map(Box::new),
         elements,
-        to,
+        to: to.map(Box::new),
         span: NOWHERE,
     });
     vec(branch, 1..4).prop_map(|branches| Circuit { branches, span: NOWHERE })
@@ -206,7 +206,7 @@ fn block(circuit: impl Strategy<Value = Circuit>) -> impl Strategy<Value = Eleme
         |(instance, type_name, arguments, power_output)| {
             // The type is named where the instance is declared, by its name alone.
             let type_name = type_name.filter(|_| instance.steps.is_empty());
-            ElementKind::Block(BlockCall { instance, type_name, arguments, power_output })
+            ElementKind::Block(Box::new(BlockCall { instance, type_name, arguments, power_output }))
         },
     )
 }
@@ -226,7 +226,7 @@ fn circuit() -> BoxedStrategy<Circuit> {
 fn type_reference() -> BoxedStrategy<TypeReference> {
     let dimension = (expression(), expression()).prop_map(|(first, last)| Dimension { first, last });
     (prop_oneof![3 => Just(Vec::new()), 1 => vec(dimension, 1..3)], name())
-        .prop_map(|(dimensions, name)| TypeReference { dimensions, name, span: NOWHERE })
+        .prop_map(|(dimensions, name)| TypeReference { dimensions: dimensions.into(), name, span: NOWHERE })
         .boxed()
 }
 
@@ -262,8 +262,8 @@ fn variables(classes: Vec<VariableClass>) -> BoxedStrategy<Vec<Variable>> {
                 class,
                 name,
                 ty,
-                address,
-                initial,
+                address: address.map(Box::new),
+                initial: initial.map(Box::new),
                 retain,
                 span: NOWHERE,
             });
@@ -272,7 +272,13 @@ fn variables(classes: Vec<VariableClass>) -> BoxedStrategy<Vec<Variable>> {
 
 fn rung() -> BoxedStrategy<Rung> {
     (option::of(name()), option::of("\\PC{0,12}|[\t\r\n\"$\u{1b}a]{0,8}"), any::<bool>(), circuit())
-        .prop_map(|(name, title, enabled, circuit)| Rung { name, title, enabled, circuit, span: NOWHERE })
+        .prop_map(|(name, title, enabled, circuit)| Rung {
+            name,
+            title: title.map(Into::into),
+            enabled,
+            circuit,
+            span: NOWHERE,
+        })
         .boxed()
 }
 

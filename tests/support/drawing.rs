@@ -38,7 +38,7 @@ pub(crate) fn variable(class: VariableClass, text: &str, ty: Elementary) -> Vari
 /// A declaration of an array with one dimension, from index 0.
 pub(crate) fn array(class: VariableClass, text: &str, count: u32, ty: Elementary) -> Variable {
     let dimension = Dimension { first: integer(0), last: integer(i128::from(count) - 1) };
-    let ty = TypeReference { dimensions: vec![dimension], ..TypeReference::of_name(name(ty.name())) };
+    let ty = TypeReference { dimensions: [dimension].into(), ..TypeReference::of_name(name(ty.name())) };
     Variable { ty: Some(ty), ..variable(class, text, Elementary::Bool) }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn expression(kind: ExpressionKind) -> Expression {
 
 /// A literal without a type, behind the operator where it is negative.
 pub(crate) fn integer(value: i128) -> Expression {
-    let magnitude = Literal::Integer { value: value.unsigned_abs(), base: 10, ty: None };
+    let magnitude = Literal::Integer { value: value.unsigned_abs().into(), base: 10, ty: None };
     let magnitude = expression(ExpressionKind::Literal(magnitude));
     if value < 0 { expression(ExpressionKind::Unary(UnaryOperator::Negate, Box::new(magnitude))) } else { magnitude }
 }
@@ -115,10 +115,10 @@ pub(crate) fn argument(pin: &str, wire: Wire) -> Argument {
 
 /// A call that declares its instance.
 pub(crate) fn call(instance: &str, block: StandardBlock, arguments: Vec<Argument>) -> Element {
-    element(ElementKind::Block(BlockCall {
+    element(ElementKind::Block(Box::new(BlockCall {
         instance: reference(instance),
         type_name: Some(name(block.name())),
         arguments,
         power_output: None,
-    }))
+    })))
 }

@@ -86,14 +86,14 @@ impl<'a> Oracle<'a> {
         oracle.globals = oracle.frame(checked.globals(), &[]);
         for id in checked.globals() {
             let storage = oracle.globals.get(id).expect("it is global").clone();
-            oracle.observe(checked.variable(id).name.clone(), checked.variable(id).ty, &storage);
+            oracle.observe(checked.variable(id).name.to_string(), checked.variable(id).ty, &storage);
         }
         for program in checked.programs() {
             let frame = oracle.frame(checked.unit(program.unit).variables(), &[]);
             for id in checked.unit(program.unit).variables() {
                 let variable = checked.variable(id);
                 let name = match checked.programs().len() {
-                    1 => variable.name.clone(),
+                    1 => variable.name.to_string(),
                     _ => format!("{}.{}", program.name, variable.name),
                 };
                 oracle.observe(name, variable.ty, frame.get(id).expect("it is the program's"));

@@ -176,7 +176,7 @@ impl Generator {
         elements.extend(self.ending());
         let rung = Rung {
             name: self.dice.percent(70).then(|| drawing::name(&format!("r{place}"))),
-            title: self.dice.percent(20).then(|| format!("what rung {place} is for")),
+            title: self.dice.percent(20).then(|| format!("what rung {place} is for").into()),
             enabled: !self.dice.percent(4),
             ..drawing::rung(elements)
         };

@@ -79,12 +79,12 @@ pub(crate) fn observed(layout: &Layout) -> Vec<(String, Value)> {
 fn inputs(checked: &Checked) -> Vec<String> {
     let is_input = |id: &VariableId| checked.variable(*id).class == VariableClass::Input;
     let mut names: Vec<String> =
-        checked.globals().filter(is_input).map(|id| checked.variable(id).name.clone()).collect();
+        checked.globals().filter(is_input).map(|id| checked.variable(id).name.to_string()).collect();
     for program in checked.programs() {
         for id in checked.unit(program.unit).variables().filter(is_input) {
             let name = &checked.variable(id).name;
             names.push(match checked.programs().len() {
-                1 => name.clone(),
+                1 => name.to_string(),
                 _ => format!("{}.{name}", program.name),
             });
         }

@@ -2,6 +2,8 @@
 
 use std::cell::RefCell;
 
+use thin_vec::ThinVec;
+
 use crate::elementary::Elementary;
 use crate::ladder::{
     Address, Area, Argument, BinaryOperator, BlockCall, Branch, Circuit, CoilKind, ContactKind, Element, ElementKind,
@@ -51,7 +53,7 @@ pub(super) fn address(text: &str) -> Address {
 /// `a`, `t.Q`, `w.3`, `%IX0.3`
 pub(super) fn reference(text: &str) -> Reference {
     if text.starts_with('%') {
-        return Reference { root: Root::Address(address(text)), steps: Vec::new(), span: span(text) };
+        return Reference { root: Root::Address(Box::new(address(text))), steps: ThinVec::new(), span: span(text) };
     }
     let mut parts = text.split('.');
     let root = Root::Name(name(parts.next().unwrap_or_default()));
@@ -101,11 +103,11 @@ pub(super) trait Declare: Sized {
 
 impl Declare for Variable {
     fn starting(self, value: Expression) -> Self {
-        Self { initial: Some(value), ..self }
+        Self { initial: Some(Box::new(value)), ..self }
     }
 
     fn at(self, text: &str) -> Self {
-        Self { address: Some(address(text)), ..self }
+        Self { address: Some(Box::new(address(text))), ..self }
     }
 
     fn typed(self, ty: &str) -> Self {
@@ -122,11 +124,11 @@ fn literal(literal: Literal, text: impl Into<String>) -> Expression {
 }
 
 pub(super) fn int(value: u128) -> Expression {
-    literal(Literal::Integer { value, base: 10, ty: None }, value.to_string())
+    literal(Literal::Integer { value: value.into(), base: 10, ty: None }, value.to_string())
 }
 
 pub(super) fn typed(ty: Elementary, value: u128) -> Expression {
-    literal(Literal::Integer { value, base: 10, ty: Some(ty) }, format!("{ty}#{value}"))
+    literal(Literal::Integer { value: value.into(), base: 10, ty: Some(ty) }, format!("{ty}#{value}"))
 }
 
 pub(super) fn real(value: f64) -> Expression {
@@ -192,7 +194,7 @@ pub(super) fn when(condition: Expression) -> Element {
 }
 
 pub(super) fn assign(target: &str, value: Expression) -> Element {
-    element(ElementKind::Assignment { target: reference(target), value }, target)
+    element(ElementKind::Assignment { target: reference(target), value: Box::new(value) }, target)
 }
 
 /// `>> name`, pointed at as a whole.
@@ -210,7 +212,7 @@ pub(super) fn branch(elements: Vec<Element>) -> Branch {
 
 pub(super) fn between(from: &str, elements: Vec<Element>, to: &str) -> Branch {
     let node = |text: &str| (!text.is_empty()).then(|| name(text));
-    Branch { from: node(from), elements, to: node(to), span: span("branch") }
+    Branch { from: node(from).map(Box::new), elements, to: node(to).map(Box::new), span: span("branch") }
 }
 
 pub(super) fn circuit(branches: Vec<Branch>) -> Circuit {
@@ -244,7 +246,7 @@ pub(super) fn call_through(text: &str, arguments: Vec<Argument>, power: Option<&
     let power_output = power.map(name);
     let call =
         BlockCall { instance: Reference::of_name(name(instance)), type_name: ty.map(name), arguments, power_output };
-    element(ElementKind::Block(call), text)
+    element(ElementKind::Block(Box::new(call)), text)
 }
 
 pub(super) fn network(branches: Vec<Branch>) -> Rung {

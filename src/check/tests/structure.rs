@@ -1,5 +1,7 @@
 //! Rungs: nodes, blocks, coils that collide, rungs that do nothing.
 
+use thin_vec::thin_vec;
+
 use super::build::*;
 use super::*;
 use crate::check::{
@@ -38,15 +40,15 @@ fn a_seal_in_becomes_a_tree_with_everything_resolved() {
     let seal = parallel(vec![branch(vec![open("start")]), branch(vec![open("pump")])]);
     let rungs = vec![named("r10", vec![seal, contact(ContactKind::Closed, read("stop")), coil("pump")])];
     let checked = clean(&program(vec![input("start"), input("stop"), output("pump")], rungs));
-    let series = |elements| Branch { from: None, elements, to: None };
+    let series = |elements: Vec<Element>| Branch { from: None, elements: elements.into(), to: None };
     let operand = Expression { ty: Elementary::Bool, kind: ExpressionKind::Read(place(1)) };
     let expected = series(vec![
-        Element::Parallel(Circuit { branches: vec![series(vec![contact_on(0)]), series(vec![contact_on(2)])] }),
+        Element::Parallel(Circuit { branches: Box::new([series(vec![contact_on(0)]), series(vec![contact_on(2)])]) }),
         Element::Contact { kind: ContactKind::Closed, operand },
         coil_on(2),
     ]);
     assert_eq!(checked.units()[0].rungs.len(), 1);
-    assert_eq!(checked.units()[0].rungs[0].circuit.branches, [expected]);
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches, [expected].into());
     assert_eq!((checked.units()[0].rungs[0].label.as_str(), checked.units()[0].rungs[0].nodes), ("r10", 0));
 }
 
@@ -75,17 +77,20 @@ fn a_bridge_of_nodes_is_resolved() {
             between("w2", vec![coil("_d")], ""),
         ])],
     ));
-    let of =
-        |from: Option<u32>, elements, to: Option<u32>| Branch { from: from.map(NodeId), elements, to: to.map(NodeId) };
+    let of = |from: Option<u32>, element: Element, to: Option<u32>| Branch {
+        from: from.map(NodeId),
+        elements: Box::new([element]),
+        to: to.map(NodeId),
+    };
     let expected = [
-        of(None, vec![contact_on(0)], Some(0)),
-        of(None, vec![contact_on(1)], Some(1)),
-        of(Some(0), vec![contact_on(2)], Some(1)),
-        of(Some(0), vec![coil_on(2)], None),
-        of(Some(1), vec![coil_on(3)], None),
+        of(None, contact_on(0), Some(0)),
+        of(None, contact_on(1), Some(1)),
+        of(Some(0), contact_on(2), Some(1)),
+        of(Some(0), coil_on(2), None),
+        of(Some(1), coil_on(3), None),
     ];
     assert_eq!(
-        (checked.units()[0].rungs[0].nodes, checked.units()[0].rungs[0].circuit.branches.as_slice()),
+        (checked.units()[0].rungs[0].nodes, &*checked.units()[0].rungs[0].circuit.branches),
         (2, expected.as_slice())
     );
 }
@@ -134,7 +139,7 @@ fn power_feeds_the_first_bool_input_unless_that_is_wired() {
         outputs: vec![(Output::Pin(2), place(1))],
         power_output: Output::Pin(0),
     };
-    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[1], Element::Call(expected.clone()));
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[1], Element::Call(Box::new(expected.clone())));
 
     let enabled = vec![
         call_through("c:CTUD", vec![value("PV", int(9)), value("cu", read("a")), to("CV", "n")], Some("qd")),
@@ -143,27 +148,27 @@ fn power_feeds_the_first_bool_input_unless_that_is_wired() {
     let checked = clean(&program(variables, vec![rung(enabled)]));
     let inputs = vec![input_of(4, constant(9)), input_of(0, read_a())];
     let expected = Call { power_input: None, power_output: Output::Pin(1), inputs, ..expected };
-    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(expected));
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(Box::new(expected)));
 }
 
 #[test]
 fn a_circuit_may_be_wired_to_a_bool_input() {
     let timer = call("t:TON", vec![wired("IN", vec![open("a")]), value("PT", seconds(2))]);
     let checked = clean(&program(vec![input("a"), output("q")], vec![rung(vec![timer, coil("q")])]));
-    let branch = Branch { from: None, elements: vec![contact_on(0)], to: None };
+    let branch = Branch { from: None, elements: Box::new([contact_on(0)]), to: None };
     let expected = Call {
         callee: Callee::Standard(StandardBlock::Ton, place(2)),
         enable: None,
         power_input: None,
         inputs: vec![
-            Input { pin: 0, wire: Wire::Circuit(Circuit { branches: vec![branch] }) },
+            Input { pin: 0, wire: Wire::Circuit(Circuit { branches: Box::new([branch]) }) },
             Input { pin: 1, wire: Wire::Value(seconds_of(2)) },
         ],
         references: vec![],
         outputs: vec![],
         power_output: Output::Pin(0),
     };
-    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(expected));
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements[0], Element::Call(Box::new(expected)));
 }
 
 #[test]
@@ -171,11 +176,11 @@ fn members_are_read_and_written_by_pin() {
     let rungs =
         vec![rung(vec![call("t:TON", vec![]), assign("t.PT", seconds(1))]), rung(vec![assign("_e", read("T.et"))])];
     let checked = clean(&program(vec![memory("_e", "TIME")], rungs));
-    let pin = |pin| Place { path: vec![Step::Pin(pin)], ..place(1) };
+    let pin = |pin| Place { path: thin_vec![Step::Pin(pin)], ..place(1) };
     let assignment = |rung: usize, at: usize| checked.units()[0].rungs[rung].circuit.branches[0].elements[at].clone();
-    assert_eq!(assignment(0, 1), Element::Assignment { target: pin(PinId::Input(1)), value: seconds_of(1) });
+    assert_eq!(assignment(0, 1), Element::Assignment { target: pin(PinId::Input(1)), value: Box::new(seconds_of(1)) });
     let elapsed = Expression { ty: Elementary::Time, kind: ExpressionKind::Read(pin(PinId::Output(1))) };
-    assert_eq!(assignment(1, 0), Element::Assignment { target: place(0), value: elapsed });
+    assert_eq!(assignment(1, 0), Element::Assignment { target: place(0), value: Box::new(elapsed) });
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Types, constants, and what is read and written.
 
+use thin_vec::ThinVec;
+
 use super::build::*;
 use super::*;
 use crate::check::{Element, Expression, ExpressionKind, Initial, Place, VariableId};
@@ -15,13 +17,13 @@ fn assigning(ty: &str, others: Vec<Variable>, value: ladder::Expression) -> Prog
 /// What such a program assigns.
 fn assigned(ty: &str, others: Vec<Variable>, value: ladder::Expression) -> Expression {
     match &clean(&assigning(ty, others, value)).units()[0].rungs[0].circuit.branches[0].elements[0] {
-        Element::Assignment { value, .. } => value.clone(),
+        Element::Assignment { value, .. } => (**value).clone(),
         other => panic!("{other:?}"),
     }
 }
 
 fn place(variable: u32) -> Place {
-    Place { variable: VariableId(variable), path: vec![], bit: None }
+    Place { variable: VariableId(variable), path: ThinVec::new(), bit: None }
 }
 
 fn folded(value: Option<Value>) -> Expression {
@@ -252,5 +254,5 @@ fn a_coil_writes_a_bit_of_a_word() {
         Element::Contact { kind: ContactKind::Closed, operand },
         Element::Coil { kind: CoilKind::Plain, target: bit(15) },
     ];
-    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements, expected);
+    assert_eq!(checked.units()[0].rungs[0].circuit.branches[0].elements, expected.into());
 }

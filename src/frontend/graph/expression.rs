@@ -2,6 +2,8 @@
 //!
 //! Every part gets one span, that of the element around it. Nothing here looks a name up.
 
+use thin_vec::ThinVec;
+
 use crate::elementary::Elementary;
 use crate::frontend::text::literals;
 use crate::ladder::{
@@ -223,7 +225,8 @@ impl<'a> Parser<'a> {
                     rest[1..].find(|c: char| c != '.' && !c.is_ascii_alphanumeric()).map_or(rest.len(), |end| end + 1);
                 let address = address(&rest[..end], self.span)?;
                 self.at += end;
-                let reference = Reference { root: Root::Address(address), steps: Vec::new(), span: self.span };
+                let reference =
+                    Reference { root: Root::Address(Box::new(address)), steps: ThinVec::new(), span: self.span };
                 Ok(self.make(ExpressionKind::Read(reference)))
             }
             Some(first) if first.is_ascii_digit() => self.literal(),
@@ -284,7 +287,7 @@ impl<'a> Parser<'a> {
         if self.take("(") {
             return self.call(name);
         }
-        let mut steps = Vec::new();
+        let mut steps = ThinVec::new();
         loop {
             if self.take("[") {
                 let mut indices = vec![self.nested(|parser| parser.binary(0))?];
@@ -322,14 +325,15 @@ impl<'a> Parser<'a> {
         if is_value && !time && Elementary::from_name(&prefix.text).is_none() {
             self.at += 1;
             let value = self.name()?;
-            return Ok(self.make(ExpressionKind::Literal(Literal::Enumerated { ty: prefix, value })));
+            return Ok(self
+                .make(ExpressionKind::Literal(Literal::Enumerated { ty: Box::new(prefix), value: Box::new(value) })));
         }
         self.at = start;
         self.literal()
     }
 
     fn call(&mut self, function: Name) -> Read<Expression> {
-        let mut arguments = Vec::new();
+        let mut arguments = ThinVec::new();
         while !self.take(")") {
             if !arguments.is_empty() {
                 self.need(",")?;

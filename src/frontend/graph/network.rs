@@ -480,7 +480,7 @@ impl<'v> Plan<'v> {
         let from = (edge.from != Point::Rail).then(|| self.node(edge.from, span));
         let to = outward.then(|| self.node(edge.to, span));
         let elements = self.elements(edge.items)?;
-        Some(Branch { from, elements, to, span })
+        Some(Branch { from: from.map(Box::new), elements, to: to.map(Box::new), span })
     }
 
     fn elements(&mut self, items: Vec<Item>) -> Option<Vec<Element>> {
@@ -532,7 +532,7 @@ impl<'v> Plan<'v> {
             Some(region) => self.region(region, Some(point))?,
             None => {
                 let from = (point != Point::Rail).then(|| self.node(point, span));
-                vec![Branch { from, elements: Vec::new(), to: None, span }]
+                vec![Branch { from: from.map(Box::new), elements: Vec::new(), to: None, span }]
             }
         };
         Some(Circuit { branches, span })

@@ -1,6 +1,8 @@
 //! The names of pins, as the standard spells them: tools number the pins of a function in their own ways (CODESYS counts EN
 //! as the first, others leave names out), and some pins of standard blocks have other names there.
 
+use lean_string::LeanString;
+
 use super::diagram::{Block, Diagram, ItemKind};
 use super::types::Signatures;
 use crate::ladder::functions::Function;
@@ -26,7 +28,7 @@ fn name_of(block: &mut Block, signatures: &Signatures) {
             let Some(known) = StandardBlock::from_name(&block.type_name.text).filter(|_| standard) else { return };
             for pin in &mut block.inputs {
                 if let Some(name) = known.input_called(&pin.name.text) {
-                    name.clone_into(&mut pin.name.text);
+                    pin.name.text = name.into();
                 }
             }
         }
@@ -52,7 +54,7 @@ fn inputs(block: &mut Block, function: Function) {
 }
 
 /// Gives operands the names of the parameters in their places, unless all have names that say another order.
-pub(in crate::frontend) fn operands(pins: Vec<&mut String>, function: Function) {
+pub(in crate::frontend) fn operands(pins: Vec<&mut LeanString>, function: Function) {
     let parameter = |place: usize| match function {
         Function::Standard(function) => function.parameter(place).map(|parameter| parameter.name),
         Function::Convert { .. } | Function::Truncate { .. } => (place == 0).then_some("IN"),
@@ -78,7 +80,7 @@ pub(in crate::frontend) fn operands(pins: Vec<&mut String>, function: Function) 
         // Behind the listed ones they count on, from the number of the last one.
         let numbers = (place.saturating_sub(1)..=place + 1).map(|number| format!("IN{number}"));
         let name = [known.to_owned()].into_iter().chain(numbers).find(|name| place_of(name) == Some(place));
-        *pin = name.unwrap_or_else(|| known.to_owned());
+        *pin = name.map_or_else(|| known.into(), LeanString::from);
     }
 }
 
@@ -86,6 +88,6 @@ pub(in crate::frontend) fn operands(pins: Vec<&mut String>, function: Function) 
 fn output(block: &mut Block, is_declared: impl Fn(&str) -> bool) {
     let result = block.outputs.iter_mut().find(|pin| !is_enable(&pin.name.text));
     if let Some(pin) = result.filter(|pin| !is_declared(&pin.name.text)) {
-        "OUT".clone_into(&mut pin.name.text);
+        pin.name.text = "OUT".into();
     }
 }

@@ -103,7 +103,7 @@ fn title(diagram: &Diagram, rungs: &mut [Placed], body: Span, comments: &mut Vec
         }
         match near.find(rungs, item).and_then(|place| rungs.get_mut(place)) {
             Some(placed) if placed.rung.title.is_none() && line.chars().count() <= LONGEST_TITLE => {
-                placed.rung.title = Some(line);
+                placed.rung.title = Some(line.into());
             }
             _ => comments.push(Comment { text: text.clone(), span: body, own_line: true }),
         }

@@ -3,6 +3,8 @@
 
 use std::collections::HashMap;
 
+use lean_string::LeanString;
+
 use crate::elementary::Elementary;
 use crate::ladder::functions::{Function, ParameterType, ResultType, StandardFunction};
 use crate::ladder::library::StandardBlock;
@@ -155,7 +157,7 @@ impl Signatures {
         &self,
         name: &str,
         output: &str,
-        operands: &[(String, Option<TypeReference>)],
+        operands: &[(LeanString, Option<TypeReference>)],
         span: Span,
     ) -> Option<TypeReference> {
         if output.eq_ignore_ascii_case("ENO") {
@@ -182,7 +184,7 @@ impl Signatures {
 fn first_bool(pins: &[(Name, TypeReference)]) -> Option<String> {
     let is_bool =
         |ty: &TypeReference| ty.dimensions.is_empty() && ty.name.text.eq_ignore_ascii_case(Elementary::Bool.name());
-    pins.iter().find(|(_, ty)| is_bool(ty)).map(|(name, _)| name.text.clone())
+    pins.iter().find(|(_, ty)| is_bool(ty)).map(|(name, _)| name.text.to_string())
 }
 
 /// Of two types the one that holds the values of both, as far as there is one.
@@ -279,7 +281,7 @@ impl<'s> Scope<'s> {
                 Literal::Bool(_) => Some(elementary(Elementary::Bool, span)),
                 Literal::Time(_) => Some(elementary(Elementary::Time, span)),
                 Literal::Integer { ty, .. } | Literal::Real { ty, .. } => ty.map(|ty| elementary(ty, span)),
-                Literal::Enumerated { ty, .. } => Some(TypeReference::of_name(ty.clone())),
+                Literal::Enumerated { ty, .. } => Some(TypeReference::of_name((**ty).clone())),
             },
             ExpressionKind::Read(reference) => self.reference(reference),
             ExpressionKind::Unary(UnaryOperator::Not | UnaryOperator::Negate, operand) => self.value(operand),
@@ -293,7 +295,7 @@ impl<'s> Scope<'s> {
             ExpressionKind::Call { function, arguments } => {
                 let operand = |(place, argument): (usize, &crate::ladder::FunctionArgument)| {
                     let name = argument.parameter.as_ref().map(|name| name.text.clone());
-                    let name = name.unwrap_or_else(|| positional(&function.text, place));
+                    let name = name.unwrap_or_else(|| positional(&function.text, place).into());
                     (name, self.value(&argument.value))
                 };
                 let operands: Vec<_> = arguments.iter().enumerate().map(operand).collect();

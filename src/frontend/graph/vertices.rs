@@ -307,7 +307,7 @@ impl<'d, 'r> Builder<'d, 'r> {
             arguments: Vec::new(),
             power_output: Some(Name::new("OUT", span)),
         };
-        let vertex = self.add(item, ElementKind::Block(call), vec![Feed::Rail]);
+        let vertex = self.add(item, ElementKind::Block(Box::new(call)), vec![Feed::Rail]);
         self.vertices[vertex].pins.push(PowerPin { name: Name::new("IN", span), feeds, place: 0 });
         Feed::Vertex(vertex)
     }
@@ -341,7 +341,7 @@ impl<'d, 'r> Builder<'d, 'r> {
             arguments: Vec::new(),
             power_output: None,
         };
-        vec![Feed::Vertex(self.add(item, ElementKind::Block(call), feeds))]
+        vec![Feed::Vertex(self.add(item, ElementKind::Block(Box::new(call)), feeds))]
     }
 
     fn contact(&mut self, item: usize, operand: &Expression, modifier: Modifier, inputs: &[Source]) {
@@ -410,7 +410,7 @@ impl<'d, 'r> Builder<'d, 'r> {
         }
         let value = self.value(source);
         let value = if coil.modifier.negated { negate(value) } else { value };
-        self.add(item, ElementKind::Assignment { target: coil.target.clone(), value }, feeds);
+        self.add(item, ElementKind::Assignment { target: coil.target.clone(), value: Box::new(value) }, feeds);
     }
 
     fn call(&mut self, item: usize, block: &'d Block) {
@@ -476,7 +476,7 @@ impl<'d, 'r> Builder<'d, 'r> {
         };
         let main = self.main[item].filter(|main| Some(*main) != default);
         let power_output = main.map(|main| block.outputs[main].name.clone());
-        let kind = ElementKind::Block(BlockCall { instance, type_name, arguments, power_output });
+        let kind = ElementKind::Block(Box::new(BlockCall { instance, type_name, arguments, power_output }));
         let vertex = self.add(item, kind, feeds);
         self.vertices[vertex].pins = pins;
         self.power[item] = Some(vertex);

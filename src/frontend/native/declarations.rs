@@ -51,8 +51,8 @@ impl Parser<'_> {
             class,
             name: Name::new("", span),
             ty: clauses.ty.map(|(ty, _)| ty),
-            address: clauses.address.map(|(address, _)| address),
-            initial: clauses.initial.map(|(initial, _)| initial),
+            address: clauses.address.map(|(address, _)| Box::new(address)),
+            initial: clauses.initial.map(|(initial, _)| Box::new(initial)),
             retain: clauses.retain.is_some(),
             span,
         };

@@ -146,7 +146,7 @@ impl Parser<'_> {
         self.advance();
         let (kind, hint) = match Reader::braces(self)? {
             Braces::Condition(condition) => (ElementKind::Condition(condition), LONE),
-            Braces::Assignment { target, value } => (ElementKind::Assignment { target, value }, LONE),
+            Braces::Assignment { target, value } => (ElementKind::Assignment { target, value: Box::new(value) }, LONE),
             Braces::Statements(statements) => {
                 self.anchor_here();
                 (ElementKind::Statements(statements), "braces hold statements, each with a semicolon behind it")
@@ -218,7 +218,7 @@ impl Parser<'_> {
         let power_output = if self.take(Kind::Dot) { Some(self.name("an output of the block")?) } else { None };
         let closed = self.end - 1;
         self.anchor(closed);
-        Ok(ElementKind::Block(BlockCall { instance, type_name, arguments, power_output }))
+        Ok(ElementKind::Block(Box::new(BlockCall { instance, type_name, arguments, power_output })))
     }
 
     /// One argument; `None` if its circuit is too deep and was skipped.

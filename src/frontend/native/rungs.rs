@@ -23,7 +23,7 @@ impl Parser<'_> {
         } else {
             None
         };
-        let title = if self.token.kind == Kind::Text { Some(self.title()) } else { None };
+        let title = if self.token.kind == Kind::Text { Some(self.title().into()) } else { None };
         if let Some(name) = &name
             && title.is_none()
             && !self.token.first_on_line
@@ -86,7 +86,7 @@ impl Parser<'_> {
         let start = self.token.span.start;
         let mut branch = Branch { from: None, elements: Vec::new(), to: None, span: Span::default() };
         if self.token.kind == Kind::Greater {
-            branch.from = Some(self.node()?);
+            branch.from = Some(Box::new(self.node()?));
         }
         if self.token.kind == Kind::Minus {
             self.advance();
@@ -97,7 +97,7 @@ impl Parser<'_> {
         }
         while !self.at_branch_end() {
             if self.token.kind == Kind::Greater {
-                branch.to = Some(self.node()?);
+                branch.to = Some(Box::new(self.node()?));
                 if !self.at_branch_end() {
                     let problem = self.unexpected("the end of the branch");
                     return self.give_up(problem.hint("a node ends its branch: go on from it behind a `|`, >node> …"));

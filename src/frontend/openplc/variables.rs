@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use thin_vec::ThinVec;
+
 use super::json::{Kind, Value};
 use super::project::list;
 use crate::diagnostic::Code;
@@ -58,7 +60,18 @@ pub(super) fn variable(value: Value<'_>, report: &mut Report) -> Option<(Variabl
     let initial = value.member("initialValue").and_then(|initial| initial_value(initial, Some(&ty), report));
     let retain = flag == "retain";
     let external = class.eq_ignore_ascii_case("external");
-    Some((Variable { class: class_of, name, ty: Some(ty), address, initial, retain, span }, external))
+    Some((
+        Variable {
+            class: class_of,
+            name,
+            ty: Some(ty),
+            address: address.map(Box::new),
+            initial: initial.map(Box::new),
+            retain,
+            span,
+        },
+        external,
+    ))
 }
 
 /// The type in the member `type` of a variable or member.
@@ -76,15 +89,15 @@ pub(super) fn type_of(value: Value<'_>, name: &Name, report: &mut Report) -> Opt
     };
     let dimensions = match data {
         Some(data) => dimensions(data, report)?,
-        None => Vec::new(),
+        None => ThinVec::new(),
     };
     let text = if Elementary::from_name(&named).is_some() { named.to_uppercase() } else { named.trim().to_owned() };
     Some(TypeReference { dimensions, name: Name::new(text, name.span), span: name.span })
 }
 
 /// The bounds of an array, each as `0..9`.
-pub(super) fn dimensions(value: Value<'_>, report: &mut Report) -> Option<Vec<Dimension>> {
-    let mut dimensions = Vec::new();
+pub(super) fn dimensions(value: Value<'_>, report: &mut Report) -> Option<ThinVec<Dimension>> {
+    let mut dimensions = ThinVec::new();
     for item in list(value, "dimensions", report) {
         let span = item.span();
         let bounds = item.text_of("dimension").or_else(|| item.text()).unwrap_or_default();
@@ -118,10 +131,10 @@ pub(super) fn initial_value(value: Value<'_>, ty: Option<&TypeReference>, report
     }
     let mut read = report.read(expression::initial_value(&text, span), span)?;
     let is_bool = ty.is_some_and(|ty| ty.dimensions.is_empty() && ty.name.text.eq_ignore_ascii_case("BOOL"));
-    if let (true, ExpressionKind::Literal(Literal::Integer { value: bit @ (0 | 1), ty: None, .. })) =
-        (is_bool, &read.kind)
+    if let (true, ExpressionKind::Literal(Literal::Integer { value, ty: None, .. })) = (is_bool, &read.kind)
+        && let bit @ (0 | 1) = value.get()
     {
-        read.kind = ExpressionKind::Literal(Literal::Bool(*bit == 1));
+        read.kind = ExpressionKind::Literal(Literal::Bool(bit == 1));
     }
     Some(read)
 }

@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use thin_vec::ThinVec;
+
 use super::xml::Node;
 use super::{Pou, Report};
 use crate::diagnostic::Code;
@@ -104,7 +106,7 @@ impl<'r> Reader<'r> {
         match node.name() {
             "derived" => self.named(node).map(TypeReference::of_name),
             "array" => {
-                let mut dimensions = Vec::new();
+                let mut dimensions = ThinVec::new();
                 for dimension in node.all("dimension") {
                     let bound = |name: &str| dimension.attribute(name).unwrap_or_default();
                     let [first, last] = ["lower", "upper"].map(|name| {
@@ -161,10 +163,10 @@ impl<'r> Reader<'r> {
                 let text = value.attribute("value")?;
                 let mut read = self.report.read(expression::initial_value(text, span), span)?;
                 let is_bool = ty.is_some_and(|ty| ty.dimensions.is_empty() && is(&ty.name, Elementary::Bool));
-                if let (true, ExpressionKind::Literal(Literal::Integer { value: bit @ (0 | 1), ty: None, .. })) =
-                    (is_bool, &read.kind)
+                if let (true, ExpressionKind::Literal(Literal::Integer { value, ty: None, .. })) = (is_bool, &read.kind)
+                    && let bit @ (0 | 1) = value.get()
                 {
-                    read.kind = ExpressionKind::Literal(Literal::Bool(*bit == 1));
+                    read.kind = ExpressionKind::Literal(Literal::Bool(bit == 1));
                 }
                 return Some(read);
             }
@@ -218,7 +220,15 @@ impl<'r> Reader<'r> {
             });
             let initial = node.child("initialValue").and_then(|value| self.initial(value, ty.as_ref()));
             self.document(node);
-            found.push(Variable { class, name, ty, address, initial, retain, span: node.span() });
+            found.push(Variable {
+                class,
+                name,
+                ty,
+                address: address.map(Box::new),
+                initial: initial.map(Box::new),
+                retain,
+                span: node.span(),
+            });
         }
     }
 

@@ -1,6 +1,9 @@
 //! Bodies in LD whose rungs are written out: `<rung>` holds its elements in series, each naming its variable in an attribute.
 //! Tools for verification write them so. They have no durations: a whole number at a TIME pin counts scans.
 
+use lean_string::LeanString;
+use thin_vec::thin_vec;
+
 use super::xml::Node;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::elementary::Elementary;
@@ -68,7 +71,7 @@ pub(super) fn read(content: Node<'_, '_>, around: &Around<'_>, report: &mut Repo
     let mut comment = None;
     for node in content.children_and_comments() {
         match node.name() {
-            "" => comment = Some(node.text().split_whitespace().collect::<Vec<_>>().join(" ")),
+            "" => comment = Some(node.text().split_whitespace().collect::<Vec<_>>().join(" ").into()),
             "rung" => {
                 let span = node.span();
                 let mut counted = Vec::new();
@@ -76,7 +79,7 @@ pub(super) fn read(content: Node<'_, '_>, around: &Around<'_>, report: &mut Repo
                     .children()
                     .filter_map(|element| self::element(element, around, &mut counted, report))
                     .collect();
-                let title = comment.take().or_else(|| node.attribute("comment").map(str::to_owned));
+                let title = comment.take().or_else(|| node.attribute("comment").map(LeanString::from));
                 let title = title.filter(|title| !title.is_empty());
                 let name = node.attribute("label").map(|label| Name::new(label, span));
                 // What counts scans is written behind the block, whether there is power or not.
@@ -133,7 +136,7 @@ fn element(
             let set = if says("set") { Some(true) } else { says("reset").then_some(false) };
             ElementKind::Coil { kind: coil_kind(set, negated, rising), target }
         }
-        "block" => ElementKind::Block(block(node, around, counted, report)?),
+        "block" => ElementKind::Block(Box::new(block(node, around, counted, report)?)),
         name => {
             report.not_supported(format!("element `<{name}>` in a rung"), span);
             return None;
@@ -212,7 +215,7 @@ fn duration_of(count: Expression, scan: i64) -> Expression {
 fn scans_of(instance: &Reference, pin: &str, target: Reference, ty: Elementary, scan: i64, span: Span) -> Element {
     let at = |kind: ExpressionKind| Expression { kind, span };
     let call = |function: String, value: Expression| {
-        let arguments = vec![FunctionArgument { parameter: None, value }];
+        let arguments = thin_vec![FunctionArgument { parameter: None, value }];
         at(ExpressionKind::Call { function: Name::new(function, span), arguments })
     };
     let mut read = instance.clone();
@@ -223,7 +226,7 @@ fn scans_of(instance: &Reference, pin: &str, target: Reference, ty: Elementary, 
     let seconds = at(ExpressionKind::Literal(seconds));
     let count = at(ExpressionKind::Binary(BinaryOperator::Divide, Box::new(duration), Box::new(seconds)));
     let value = call(format!("LREAL_TO_{ty}"), count);
-    Element { kind: ElementKind::Assignment { target, value }, span }
+    Element { kind: ElementKind::Assignment { target, value: Box::new(value) }, span }
 }
 
 /// Whether a pin gives a value; of what is not known, by the names that outputs have.

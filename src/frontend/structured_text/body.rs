@@ -78,7 +78,7 @@ pub(super) fn rungs(statements: Vec<Statement>, scope: &Scope<'_>, reader: &mut 
 fn rung(statement: Statement) -> Rung {
     let span = statement.span;
     let kind = match statement.kind {
-        StatementKind::Assignment { target, value } => ElementKind::Assignment { target, value },
+        StatementKind::Assignment { target, value } => ElementKind::Assignment { target, value: Box::new(value) },
         kind => ElementKind::Statements(vec![Statement { kind, span }]),
     };
     let branch = Branch { from: None, elements: vec![Element { kind, span }], to: None, span };
@@ -112,7 +112,7 @@ fn title(text: &str, rungs: &mut [Rung], comments: Vec<Comment>) -> Vec<Comment>
             && !comment.text.contains(['\n', '\r']);
         match rungs.peek_mut() {
             Some(rung) if fits && next_starts >= rung.span.start && is_line_before(text, comment.span, rung.span) => {
-                rung.title = Some(comment.text);
+                rung.title = Some(comment.text.into());
             }
             _ => left.push(comment),
         }

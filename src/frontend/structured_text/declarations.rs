@@ -115,8 +115,8 @@ impl Parser<'_> {
             class: block.class,
             name,
             ty: Some(ty.clone()),
-            address: address.clone(),
-            initial: initial.clone(),
+            address: address.clone().map(Box::new),
+            initial: initial.clone().map(Box::new),
             retain: block.retain,
             span,
         };

@@ -144,7 +144,7 @@ fn default_of_type(ty: &TypeReference, dimensions: usize, scope: &Scope<'_>) -> 
     let declared = scope.types.iter().find(|declared| declared.name.key() == key(&ty.name.text))?;
     let TypeKind::Enumeration { values, initial, .. } = &declared.kind else { return None };
     let value = initial.as_ref().or_else(|| values.first().map(|(name, _)| name))?.clone();
-    Some(ExpressionKind::Literal(Literal::Enumerated { ty: declared.name.clone(), value }))
+    Some(ExpressionKind::Literal(Literal::Enumerated { ty: Box::new(declared.name.clone()), value: Box::new(value) }))
 }
 
 fn zero(ty: Elementary) -> ExpressionKind {
@@ -152,6 +152,6 @@ fn zero(ty: Elementary) -> ExpressionKind {
         Elementary::Bool => Literal::Bool(false),
         Elementary::Time => Literal::Time(0),
         ty if ty.is_real() => Literal::Real { value: 0.0, ty: None },
-        _ => Literal::Integer { value: 0, base: 10, ty: None },
+        _ => Literal::Integer { value: 0.into(), base: 10, ty: None },
     })
 }

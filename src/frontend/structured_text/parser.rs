@@ -2,6 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
+use lean_string::LeanString;
+
 use super::body::{self, Scope};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::frontend::events::{self, Event};
@@ -259,7 +261,7 @@ impl<'a> Parser<'a> {
         }
         let named: Vec<String> = self.program.instances.iter().map(|instance| key(&instance.program.text)).collect();
         let runs = |unit: &Unit| !matches!(unit.kind, UnitKind::Program { .. }) || named.contains(&unit.name.key());
-        let idle: Vec<(String, Span)> = self
+        let idle: Vec<(LeanString, Span)> = self
             .program
             .units
             .iter()

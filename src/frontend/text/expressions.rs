@@ -1,5 +1,7 @@
 //! Expressions in IEC 61131-3 syntax, references and initial values.
 
+use thin_vec::ThinVec;
+
 use super::reader::{Parse, Reader};
 use super::token::{Keyword, Kind};
 use super::{MAXIMUM_DEPTH, literals};
@@ -203,7 +205,7 @@ impl Reader<'_> {
         if !self.enter()? {
             return Ok(Tree::placeholder(self.since(start)));
         }
-        let mut arguments = Vec::new();
+        let mut arguments = ThinVec::new();
         let mut height = 0;
         if self.token.kind != Kind::RightParenthesis {
             loop {
@@ -254,7 +256,7 @@ impl Reader<'_> {
         let span = self.token.span;
         let (negative, value) = literals::literal(self.source.slice(span), span).unwrap_or_else(|problem| {
             self.report_literal(Code::BadLiteral, span, problem);
-            (false, Literal::Integer { value: 0, base: 10, ty: None })
+            (false, Literal::Integer { value: 0.into(), base: 10, ty: None })
         });
         self.advance();
         if negative {
@@ -277,7 +279,7 @@ impl Reader<'_> {
 
     fn root(&mut self, expected: &str) -> Parse<Root> {
         Ok(match self.token.kind {
-            Kind::Address => Root::Address(self.address()),
+            Kind::Address => Root::Address(Box::new(self.address())),
             _ => Root::Name(self.name(expected)?),
         })
     }
@@ -297,7 +299,7 @@ impl Reader<'_> {
 
     /// The members, bits and indices behind what a reference starts with.
     fn steps_from(&mut self, root: Root, start: u32, in_circuit: bool) -> Parse<Path> {
-        let mut steps = Vec::new();
+        let mut steps = ThinVec::new();
         let mut highest = 0;
         loop {
             let open = self.token.span;

@@ -37,7 +37,7 @@ pub(crate) fn literal(text: &str, span: Span) -> Result<(bool, Literal), Problem
         let start = span.range().start;
         let ty = Name::new(ty, Span::new(start, start + prefix.len()));
         let value = Name::new(value, Span::new(start + prefix.len() + 1, start + text.len()));
-        return Ok((false, Literal::Enumerated { ty, value }));
+        return Ok((false, Literal::Enumerated { ty: Box::new(ty), value: Box::new(value) }));
     }
     if prefix.eq_ignore_ascii_case("T") || prefix.eq_ignore_ascii_case("TIME") {
         return Ok((false, Literal::Time(duration(rest)?)));
@@ -88,7 +88,7 @@ fn number(text: &str, ty: Option<Elementary>) -> Result<Literal, Problem> {
             "16" => 16,
             _ => return Err(Problem::new("a base is 2, 8, 10 or 16")),
         };
-        return Ok(Literal::Integer { value: integer(digits, base)?, base, ty });
+        return Ok(Literal::Integer { value: integer(digits, base)?.into(), base, ty });
     }
     if text.contains('.') || real_type {
         return match ty {
@@ -96,7 +96,7 @@ fn number(text: &str, ty: Option<Elementary>) -> Result<Literal, Problem> {
             _ => Ok(Literal::Real { value: real(text)?, ty }),
         };
     }
-    Ok(Literal::Integer { value: integer(text, 10)?, base: 10, ty })
+    Ok(Literal::Integer { value: integer(text, 10)?.into(), base: 10, ty })
 }
 
 /// Digits without the underscores that may stand one by one between them.

@@ -1,5 +1,7 @@
 //! Statements of structured text. An error costs its statement, and the list around it goes on.
 
+use thin_vec::ThinVec;
+
 use super::expressions::{Path, Tree};
 use super::reader::{Parse, Reader};
 use super::token::{Dialect, Keyword, Kind};
@@ -26,7 +28,6 @@ pub(crate) enum Braces {
 }
 
 /// What can stand where a statement can.
-#[expect(clippy::large_enum_variant, reason = "it is taken apart where it is made")]
 enum Start {
     Statement(StatementKind),
     /// A condition, the first label of a branch of CASE, or a mistake: its surroundings say.
@@ -286,7 +287,7 @@ impl Reader<'_> {
 
     /// A call as an operand. NOT(a) is an operator, although it looks like a call; in back quotes it is the function.
     fn value_of_call(&mut self, function: Name, is_operator: bool, arguments: Arguments, start: u32) -> Tree {
-        let mut values: Vec<FunctionArgument> = arguments.list.into_iter().filter_map(function_argument).collect();
+        let mut values: ThinVec<FunctionArgument> = arguments.list.into_iter().filter_map(function_argument).collect();
         let kind = match values.pop() {
             Some(FunctionArgument { parameter: None, value }) if values.is_empty() && is_operator => {
                 ExpressionKind::Unary(UnaryOperator::Not, Box::new(value))

@@ -1,5 +1,7 @@
 //! Types: where a declaration names one, and declarations of their own.
 
+use thin_vec::ThinVec;
+
 use super::reader::{GivenUp, Parse, Reader};
 use super::token::{Dialect, Keyword, Kind};
 use crate::ladder::{Dimension, Expression, Field, Name, TypeDeclaration, TypeKind, TypeReference};
@@ -9,7 +11,7 @@ impl Reader<'_> {
     /// The name of a type, or `array [0..9, 1..3] of` one.
     pub(crate) fn type_reference(&mut self) -> Parse<TypeReference> {
         let start = self.token.span.start;
-        let dimensions = if self.take(Kind::Keyword(Keyword::Array)) { self.dimensions()? } else { Vec::new() };
+        let dimensions = if self.take(Kind::Keyword(Keyword::Array)) { self.dimensions()? } else { ThinVec::new() };
         let name = if self.dialect == Dialect::StructuredText {
             self.refuse_type()?;
             self.written_out(&dimensions)?
@@ -110,10 +112,10 @@ impl Reader<'_> {
     }
 
     /// `[0..9, 1..3] of`
-    fn dimensions(&mut self) -> Parse<Vec<Dimension>> {
+    fn dimensions(&mut self) -> Parse<ThinVec<Dimension>> {
         const HINT: &str = "an array looks like this: array [0..9, 1..3] of INT";
         let open = self.token.span;
-        let mut dimensions = Vec::new();
+        let mut dimensions = ThinVec::new();
         if !self.take(Kind::LeftBracket) {
             let problem = self.unexpected("`[`").hint(HINT);
             return self.give_up(problem);

@@ -49,7 +49,7 @@ impl Oracle<'_> {
         let Some((Step::Element(indices), path)) = place.path.split_last() else {
             return self.locate(frame, place, attempt).values();
         };
-        let array = Place { variable: place.variable, path: path.to_vec(), bit: None };
+        let array = Place { variable: place.variable, path: path.into(), bit: None };
         let storage = self.locate(frame, &array, attempt);
         match (storage, self.element_at(frame, place, path.len(), indices, attempt)) {
             (Storage::Parts(elements), Some(first)) => elements[first..].iter().flat_map(Storage::values).collect(),
@@ -74,7 +74,7 @@ impl Oracle<'_> {
         indices: &[Index],
         attempt: &mut Attempt,
     ) -> Option<usize> {
-        let array = Place { variable: place.variable, path: place.path[..depth].to_vec(), bit: None };
+        let array = Place { variable: place.variable, path: place.path[..depth].into(), bit: None };
         let Type::Array(array) = self.checked.type_of(&array) else { panic!("{array:?} is no array") };
         let dimensions = &self.checked.array(array).dimensions;
         let mut element = Some(0);

@@ -24,7 +24,7 @@ impl Generator {
                 }
                 return self.call(&Instance { declared: true, ..instance }, depth);
             }
-            return drawing::element(ElementKind::Block(self.function_box(Some(depth))));
+            return drawing::element(ElementKind::Block(Box::new(self.function_box(Some(depth)))));
         }
         let next = self.dice.below(self.pending.len());
         let instance = self.pending.swap_remove(next);
@@ -35,7 +35,7 @@ impl Generator {
     }
 
     fn call(&mut self, instance: &Instance, depth: usize) -> Element {
-        drawing::element(ElementKind::Block(self.instance_call(instance, Some(depth))))
+        drawing::element(ElementKind::Block(Box::new(self.instance_call(instance, Some(depth)))))
     }
 
     /// A call in a statement, if there is anything to call.

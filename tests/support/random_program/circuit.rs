@@ -73,7 +73,7 @@ impl Generator {
             let ty = self.some_type();
             if let Some(target) = self.target(ty) {
                 let value = self.expression(ty, 2);
-                return drawing::element(ElementKind::Assignment { target, value });
+                return drawing::element(ElementKind::Assignment { target, value: Box::new(value) });
             }
         }
         let kinds = [Plain, Plain, Plain, Negated, Set, Set, Reset, Reset, Rising, Falling];
@@ -110,7 +110,7 @@ impl Generator {
     fn plain_branch(&mut self, depth: usize) -> Branch {
         // Before the elements, whose own nodes are fed too late for this branch.
         let from = (!self.in_pin && !self.fed_nodes.is_empty() && self.dice.percent(10))
-            .then(|| drawing::name(&self.dice.pick(&self.fed_nodes).clone()));
+            .then(|| Box::new(drawing::name(&self.dice.pick(&self.fed_nodes).clone())));
         let elements = if self.dice.percent(3) { Vec::new() } else { self.series(depth) };
         Branch { from, ..drawing::branch(elements) }
     }
@@ -124,15 +124,15 @@ impl Generator {
         for (index, node) in own.iter().enumerate() {
             for _ in 0..self.dice.between(1, 2) {
                 let from = (index > 0 && self.dice.percent(60))
-                    .then(|| drawing::name(self.dice.pick::<String>(&own[..index])));
-                let to = Some(drawing::name(node));
+                    .then(|| Box::new(drawing::name(self.dice.pick::<String>(&own[..index]))));
+                let to = Some(Box::new(drawing::name(node)));
                 branches.push(Branch { from, to, ..drawing::branch(self.series(depth)) });
             }
         }
         for node in &own {
             let is_used = branches.iter().any(|branch| branch.from.as_ref().is_some_and(|from| from.text == *node));
             if !is_used || self.dice.percent(70) {
-                let from = Some(drawing::name(node));
+                let from = Some(Box::new(drawing::name(node)));
                 branches.push(Branch { from, ..drawing::branch(self.series(depth)) });
             }
         }

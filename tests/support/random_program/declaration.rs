@@ -133,7 +133,7 @@ impl Generator {
         let variable = Variable {
             ty: (ty != Elementary::Bool || self.dice.percent(20))
                 .then(|| TypeReference::of_name(drawing::name(&type_name))),
-            initial,
+            initial: initial.map(Box::new),
             retain: !self.in_function
                 && matches!(class, VariableClass::Output | VariableClass::Memory)
                 && self.dice.percent(20),
@@ -156,7 +156,7 @@ impl Generator {
                 };
                 let ty = names.first().map_or(direct, |(_, ty)| *ty);
                 self.scope.push(Entry {
-                    root: Root::Address(address(class, width, numbers)),
+                    root: Root::Address(Box::new(address(class, width, numbers))),
                     way: Vec::new(),
                     ty,
                     class,
@@ -170,7 +170,9 @@ impl Generator {
         for (class, width, numbers, names) in ADDRESSES {
             for (name, ty) in names {
                 let address = Some(address(class, width, numbers));
-                self.unit.variables.push(Variable { address, ..drawing::variable(class, name, *ty) });
+                self.unit
+                    .variables
+                    .push(Variable { address: address.map(Box::new), ..drawing::variable(class, name, *ty) });
                 self.add_name(name, &Shape::Value(*ty), class);
             }
         }

@@ -252,5 +252,5 @@ pub(super) fn time(nanoseconds: i64) -> Expression {
 }
 
 fn integer(value: u128, base: u8, ty: Option<Elementary>) -> Expression {
-    drawing::expression(ExpressionKind::Literal(Literal::Integer { value, base, ty }))
+    drawing::expression(ExpressionKind::Literal(Literal::Integer { value: value.into(), base, ty }))
 }

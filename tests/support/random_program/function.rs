@@ -124,7 +124,7 @@ impl Generator {
 }
 
 fn call(name: &str, arguments: Vec<FunctionArgument>) -> Expression {
-    drawing::expression(ExpressionKind::Call { function: drawing::name(name), arguments })
+    drawing::expression(ExpressionKind::Call { function: drawing::name(name), arguments: arguments.into() })
 }
 
 fn parameter(function: StandardFunction, place: usize) -> String {

@@ -90,7 +90,10 @@ impl Generator {
         if self.dice.percent(50) {
             return drawing::expression(ExpressionKind::Read(Reference::of_name(value)));
         }
-        drawing::expression(ExpressionKind::Literal(Literal::Enumerated { ty: drawing::name("colour"), value }))
+        drawing::expression(ExpressionKind::Literal(Literal::Enumerated {
+            ty: Box::new(drawing::name("colour")),
+            value: Box::new(value),
+        }))
     }
 
     fn repetition(&mut self, depth: usize) -> Option<StatementKind> {
@@ -103,7 +106,7 @@ impl Generator {
             return None;
         }
         let root = self.dice.pick(&counts).clone();
-        let variable = Reference { root, steps: Vec::new(), span: NOWHERE };
+        let variable = Reference { root, steps: Vec::new().into(), span: NOWHERE };
         let first = self.dice.below(3);
         let last = self.dice.below(4);
         let down = last < first;

@@ -238,7 +238,7 @@ impl Generator {
         };
         let variable = Variable {
             ty: Some(self.type_reference(shape)),
-            initial: self.dice.percent(given).then(|| self.initial_of(shape)),
+            initial: self.dice.percent(given).then(|| Box::new(self.initial_of(shape))),
             ..drawing::variable(class, name, Elementary::Bool)
         };
         self.unit.variables.push(variable);

@@ -175,10 +175,10 @@ pub(in crate::frontend) fn literal(literal: &Literal) -> String {
         Literal::Integer { value, base, ty } => typed(
             ty,
             match base {
-                2 => format!("2#{value:b}"),
-                8 => format!("8#{value:o}"),
-                16 => format!("16#{value:X}"),
-                _ => value.to_string(),
+                2 => format!("2#{:b}", value.get()),
+                8 => format!("8#{:o}", value.get()),
+                16 => format!("16#{:X}", value.get()),
+                _ => value.get().to_string(),
             },
         ),
         Literal::Real { value, ty } => typed(ty, real(*value)),
@@ -317,7 +317,7 @@ pub(super) fn block_head(call: &BlockCall) -> String {
     let operator =
         |name: &&Name| ["AND", "OR", "XOR", "NOT", "MOD"].iter().any(|word| name.text.eq_ignore_ascii_case(word));
     let instance = match call.instance.as_name().filter(operator) {
-        Some(function) if call.type_name.is_none() => function.text.clone(),
+        Some(function) if call.type_name.is_none() => function.text.to_string(),
         _ => reference(&call.instance),
     };
     match &call.type_name {

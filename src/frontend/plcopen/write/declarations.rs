@@ -161,7 +161,7 @@ fn variable(xml: &mut Xml, variable: &Variable, words: Words<'_>) {
             Some(ty) => type_reference(xml, ty, words),
             None => xml.empty("BOOL", &[]),
         });
-        initial(xml, variable.initial.as_ref(), words);
+        initial(xml, variable.initial.as_deref(), words);
         if words.names.is_renamed(&variable.name.text) {
             xml.formatted("documentation", &variable.name.text);
         }

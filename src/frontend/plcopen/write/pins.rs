@@ -121,14 +121,14 @@ pub(super) fn callee(scope: &Scope<'_>, call: &BlockCall) -> Option<Callee> {
 fn of_unit(unit: &Unit, is_function: bool) -> Callee {
     let of = |class: VariableClass| -> Vec<String> {
         let is_it = |variable: &&Variable| variable.class == class && variable.address.is_none();
-        unit.variables.iter().filter(is_it).map(|variable| variable.name.text.clone()).collect()
+        unit.variables.iter().filter(is_it).map(|variable| variable.name.text.to_string()).collect()
     };
     let mut outputs = of(VariableClass::Output);
     if matches!(unit.kind, UnitKind::Function { result: Some(_) }) {
         outputs.insert(0, "OUT".to_owned());
     }
     Callee {
-        name: unit.name.text.clone(),
+        name: unit.name.text.to_string(),
         is_function,
         inputs: of(VariableClass::Input),
         in_outs: of(VariableClass::InOut),

@@ -289,7 +289,7 @@ impl<'p> Artist<'p> {
             return None;
         }
         let right = match (&call.power_output, &callee.power_output) {
-            (Some(chosen), _) => chosen.text.clone(),
+            (Some(chosen), _) => chosen.text.to_string(),
             (None, Some(pin)) if !callee.is_function => pin.clone(),
             _ => "ENO".to_owned(),
         };
@@ -308,7 +308,7 @@ impl<'p> Artist<'p> {
         let mut place = place;
         for (number, Argument { pin, wire, .. }) in call.arguments.iter().enumerate() {
             let pin = if pin.text.chars().any(char::is_alphabetic) {
-                pin.text.clone()
+                pin.text.to_string()
             } else {
                 pins::parameter(&callee.name, number)
             };

@@ -68,7 +68,7 @@ impl Rungs<'_> {
         let is_wired = |name: &str| pin(call, name).is_some();
         let feeds = pins.input.filter(|input| !is_wired(input));
         let output = match &call.power_output {
-            Some(output) if !output.text.eq_ignore_ascii_case("ENO") => Some(output.text.clone()),
+            Some(output) if !output.text.eq_ignore_ascii_case("ENO") => Some(output.text.to_string()),
             Some(_) => None,
             None => pins.output,
         };
@@ -376,7 +376,7 @@ impl Rungs<'_> {
             };
             let first = |class: VariableClass| {
                 let pin = unit.variables.iter().find(|one| one.class == class && is_bool(&one.ty));
-                pin.map(|pin| pin.name.text.clone())
+                pin.map(|pin| pin.name.text.to_string())
             };
             let has_enable = unit.variables.iter().any(|one| one.name.key() == "en");
             return Some(PowerPins {

@@ -29,7 +29,7 @@ pub(in crate::frontend) fn instances(program: &Program, names: &mut Names) -> In
     let alone = programs.len() == 1 && program.instances.is_empty();
     for unit in programs.iter().filter(|unit| !named.contains(&unit.name.key())) {
         let task = match &unit.kind {
-            UnitKind::Program { task } => task.as_ref().map(|task| task.text.clone()),
+            UnitKind::Program { task } => task.as_ref().map(|task| task.text.to_string()),
             _ => None,
         };
         let instance = if alone {
@@ -43,7 +43,7 @@ pub(in crate::frontend) fn instances(program: &Program, names: &mut Names) -> In
     }
     for instance in &program.instances {
         let name = names.spell(&instance.name.text).into_owned();
-        list.push((name, instance.program.key(), instance.task.as_ref().map(|task| task.text.clone())));
+        list.push((name, instance.program.key(), instance.task.as_ref().map(|task| task.text.to_string())));
     }
     Instances { types, list }
 }
@@ -230,7 +230,7 @@ fn declaration(variable: &Variable, words: Words<'_>) -> String {
     } else {
         String::new()
     };
-    format!("{name}{address} : {ty}{};{renamed}", words.initial(variable.initial.as_ref()))
+    format!("{name}{address} : {ty}{};{renamed}", words.initial(variable.initial.as_deref()))
 }
 
 /// `CONFIGURATION … END_CONFIGURATION`: the global variables, the tasks, and what runs in them.

@@ -569,7 +569,7 @@ impl<'a> Rungs<'a> {
     /// The name of the type of a block.
     pub(super) fn block_type(&self, call: &crate::ladder::BlockCall) -> Option<String> {
         if let Some(name) = &call.type_name {
-            return Some(name.text.clone());
+            return Some(name.text.to_string());
         }
         let Root::Name(name) = &call.instance.root else { return None };
         let declared = self.declared.get(&name.key())?;
@@ -584,7 +584,7 @@ impl<'a> Rungs<'a> {
                 Step::Bit(..) => return None,
             }
         }
-        Some(ty.name.text.clone())
+        Some(ty.name.text.to_string())
     }
 }
 
