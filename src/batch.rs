@@ -111,7 +111,7 @@ impl Batch {
         let observed = program.layout.observed().iter();
         let mut names = HashMap::new();
         for observed in observed {
-            names.entry(observed.name.to_lowercase()).or_insert(observed.slot);
+            names.entry(observed.name.as_str().to_lowercase()).or_insert(observed.slot);
         }
         let shared = Shared {
             program: program.clone(),

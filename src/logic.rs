@@ -32,6 +32,8 @@ pub use verify::{Problem, verify};
 
 use std::sync::Arc;
 
+use lean_string::LeanString;
+
 /// Sections to a chunk, unless the builder cuts earlier. Chunks of 64 to 1024 rungs run alike; smaller ones
 /// compile in parallel and are replaced one by one.
 pub const CHUNK_SECTIONS: u32 = 128;
@@ -57,7 +59,7 @@ pub struct Program {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Origin {
     /// A short label, such as the name of a rung.
-    pub label: String,
+    pub label: LeanString,
     /// The line of the source, from 1; 0 where there is none.
     pub line: u32,
 }

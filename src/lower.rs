@@ -143,7 +143,7 @@ impl<'a> Lowering<'a> {
         for (index, rung) in (0..).zip(&self.checked.unit(id).rungs) {
             self.land(RungIndex(index));
             self.rung(rung);
-            self.logic.end_section(Origin { label: rung.label.to_string(), line: line(rung.span) });
+            self.logic.end_section(Origin { label: rung.label.clone(), line: line(rung.span) });
         }
     }
 }

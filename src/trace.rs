@@ -78,7 +78,7 @@ impl Signal {
     /// Everything that can be observed, in order of declaration.
     pub fn all(layout: &Layout) -> Vec<Self> {
         let signal =
-            |observed: &Observed| Self { name: observed.name.clone(), slot: layout.slot(observed.slot).clone() };
+            |observed: &Observed| Self { name: observed.name.to_string(), slot: layout.slot(observed.slot).clone() };
         layout.observed().iter().map(signal).collect()
     }
 

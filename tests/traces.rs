@@ -17,7 +17,7 @@ fn layout(variables: &[(&str, Elementary, Area)]) -> Layout {
     let mut builder = LayoutBuilder::new();
     for (name, ty, area) in variables {
         let slot = Slot {
-            name: (*name).to_owned(),
+            name: (*name).to_owned().into(),
             ty: *ty,
             offset: 0,
             area: *area,

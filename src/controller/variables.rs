@@ -78,7 +78,7 @@ impl Names {
     pub(super) fn new(layout: &Layout) -> Self {
         let mut places = HashMap::new();
         for (place, observed) in layout.observed().iter().enumerate() {
-            for name in [observed.name.as_str().into(), observed.name.to_lowercase().into_boxed_str()] {
+            for name in [observed.name.as_str().into(), observed.name.as_str().to_lowercase().into()] {
                 places.entry(name).or_insert(place);
             }
         }

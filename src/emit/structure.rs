@@ -71,7 +71,7 @@ impl<'a> Structure<'a> {
             .iter()
             .map(|member| {
                 let name = &slots[member.first].name;
-                if member.count.is_some() { without_indices(name) } else { name.clone() }
+                if member.count.is_some() { without_indices(name) } else { name.to_string() }
             })
             .collect();
         let mut names = Names::default();

@@ -106,18 +106,18 @@ impl Difference {
         };
         let rung = writers[index].map(|section| {
             let origin = &program.origins[program.sections[section].origin as usize];
-            (origin.label.clone(), origin.line)
+            (origin.label.to_string(), origin.line)
         });
         let id = SlotId(u32::try_from(index).unwrap_or(u32::MAX));
         let observed = layout.observed().iter().find(|observed| observed.slot == id);
         let name = match (observed, slot.area) {
             (Some(observed), _) => observed.name.clone(),
-            (None, Area::State) => format!("{} (a state of a block or an edge)", slot.name),
+            (None, Area::State) => format!("{} (a state of a block or an edge)", slot.name).into(),
             (None, _) => slot.name.clone(),
         };
         Some(Self {
             slot: Some(id),
-            name,
+            name: name.to_string(),
             values: Some((slot.read(first), slot.read(second))),
             bytes: (first[bytes(slot)].to_vec(), second[bytes(slot)].to_vec()),
             rung,
@@ -154,7 +154,7 @@ mod tests {
         let mut layout = LayoutBuilder::new();
         let mut slot = |name: &str, ty, area| {
             let (name, initial) = (name.to_owned(), Value::from_bits(ty, 0));
-            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         };
         let a = slot("a", Elementary::Bool, Area::Input);
         let q = slot("q", Elementary::Int, Area::Output);
@@ -164,11 +164,11 @@ mod tests {
         let mut builder = Builder::new("p", layout.finish(None).expect("a small image"));
         let power = builder.load(a);
         builder.store(s, power);
-        builder.end_section(Origin { label: "r1".to_owned(), line: 7 });
+        builder.end_section(Origin { label: "r1".into(), line: 7 });
         let power = builder.load(s);
         let number = builder.convert(power, Elementary::Int);
         builder.store(q, number);
-        builder.end_section(Origin { label: "r2".to_owned(), line: 9 });
+        builder.end_section(Origin { label: "r2".into(), line: 9 });
         builder.finish()
     }
 

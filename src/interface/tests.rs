@@ -39,7 +39,7 @@ fn retained_and_input_bools_are_named_as_runs() {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: &str, ty, area, retain| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line: 0 });
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain, initial, line: 0 });
     };
     slot("a", Elementary::Bool, Area::Input, false);
     slot("b", Elementary::Bool, Area::Input, false);

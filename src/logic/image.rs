@@ -18,6 +18,8 @@ use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
+use lean_string::LeanString;
+
 use crate::elementary::{Elementary, Value};
 
 /// Bytes behind the last slot: an engine may read a BOOL as the low byte of 4.
@@ -105,7 +107,7 @@ pub enum Area {
 #[derive(Clone, PartialEq, Debug)]
 pub struct Slot {
     /// A name that is unique in the layout and stable over edits elsewhere in the program.
-    pub name: String,
+    pub name: LeanString,
     /// Its type.
     pub ty: Elementary,
     /// Where it lies, in bytes from the start of the image, aligned to its size.
@@ -124,7 +126,7 @@ pub struct Slot {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Observed {
     /// `name`, or `instance.member`.
-    pub name: String,
+    pub name: LeanString,
     /// Where its value is. Two variables at one address share a slot.
     pub slot: SlotId,
 }
@@ -389,7 +391,7 @@ pub struct EarlierLayout {
 impl From<&Layout> for EarlierLayout {
     fn from(layout: &Layout) -> Self {
         let kept = |slot: &Slot| KeptSlot {
-            name: slot.name.clone(),
+            name: slot.name.to_string(),
             ty: slot.ty,
             area: slot.area,
             retain: slot.retain,
@@ -442,7 +444,7 @@ impl LayoutBuilder {
     }
 
     /// Adds a name under which a slot can be watched and set.
-    pub fn observe(&mut self, name: impl Into<String>, slot: SlotId) {
+    pub fn observe(&mut self, name: impl Into<LeanString>, slot: SlotId) {
         self.observed.push(Observed { name: name.into(), slot });
     }
 

@@ -96,7 +96,7 @@ pub fn write_map(program: &Program, source_name: &str) -> String {
             .slots()
             .iter()
             .map(|slot| MapSlot {
-                name: slot.name.clone(),
+                name: slot.name.to_string(),
                 ty: slot.ty.name().to_owned(),
                 offset: slot.offset,
                 direction: area_name(slot.area).to_owned(),
@@ -123,14 +123,14 @@ pub fn write_map(program: &Program, source_name: &str) -> String {
 
 fn observed(layout: &Layout) -> Vec<MapObserved> {
     let of = |observed: &super::image::Observed| MapObserved {
-        name: observed.name.clone(),
-        slot: layout.slot(observed.slot).name.clone(),
+        name: observed.name.to_string(),
+        slot: layout.slot(observed.slot).name.to_string(),
     };
     layout.observed().iter().map(of).collect()
 }
 
 fn arrays(layout: &Layout) -> Vec<MapArray> {
-    let of = |array: &Array| MapArray { first: layout.slot(array.first).name.clone(), count: array.count };
+    let of = |array: &Array| MapArray { first: layout.slot(array.first).name.to_string(), count: array.count };
     layout.arrays().iter().map(of).collect()
 }
 
@@ -138,7 +138,7 @@ fn tasks(program: &Program) -> Vec<MapTask> {
     let of = |task: &Task| MapTask {
         name: task.name.clone(),
         interval: task.interval,
-        due: task.due.map(|slot| program.layout.slot(slot).name.clone()),
+        due: task.due.map(|slot| program.layout.slot(slot).name.to_string()),
     };
     program.tasks.iter().filter(|task| !task.is_plain()).map(of).collect()
 }
@@ -198,7 +198,7 @@ mod tests {
         for (line, (name, ty, area)) in (1..).zip(slots) {
             let (watched, name, initial) = (format!("{name}.Q"), (*name).to_owned(), Value::default_of(*ty));
             let retain = *area == Area::Output;
-            let slot = layout.slot(Slot { name, ty: *ty, offset: 0, area: *area, retain, initial, line });
+            let slot = layout.slot(Slot { name: name.into(), ty: *ty, offset: 0, area: *area, retain, initial, line });
             layout.observe(watched, slot);
         }
         Builder::new("pump", layout.finish(earlier).unwrap()).finish()
@@ -287,7 +287,7 @@ mod tests {
         let mut layout = LayoutBuilder::new();
         let mut slot = |name: &str, ty, area| {
             let (name, initial) = (name.to_owned(), Value::default_of(ty));
-            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         };
         let elements = ["a[1]", "a[2]"].map(|name| slot(name, Elementary::Int, Area::Memory));
         let due = slot("#task fast", Elementary::Time, Area::State);
@@ -379,7 +379,7 @@ mod tests {
                 let mut layout = LayoutBuilder::new();
                 for name in ["start", "lamp", "new"] {
                     let (name, ty, initial) = (name.to_owned(), Elementary::Int, Value::default_of(Elementary::Int));
-                    layout.slot(Slot { name, ty, offset: 0, area: Area::Output, retain: true, initial, line: 0 });
+                    layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Output, retain: true, initial, line: 0 });
                 }
                 if let Ok(layout) = layout.finish(Some(&earlier)) {
                     prop_assert_eq!(layout.problems(), Vec::<String>::new());

@@ -33,7 +33,7 @@ pub fn program(helper: Helper) -> Program {
     let (ty, initial) = (Elementary::Lreal, Value::default_of(Elementary::Lreal));
     let mut layout = LayoutBuilder::new();
     for (name, area) in slots {
-        layout.slot(Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 });
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 });
     }
     let layout = layout.finish(None).unwrap_or_else(|_| unreachable!("three slots fit"));
     let recorder = Recorder {
@@ -42,7 +42,7 @@ pub fn program(helper: Helper) -> Program {
     let result = record(&recorder, helper).value;
     let mut builder = recorder.state.into_inner().builder;
     builder.store(RESULT, result);
-    builder.end_section(Origin { label: helper.mnemonic().to_owned(), line: 0 });
+    builder.end_section(Origin { label: helper.mnemonic().into(), line: 0 });
     without_idle(builder.finish())
 }
 

@@ -122,7 +122,7 @@ impl Reader {
             "observe" => {
                 line.word()?;
                 let slot = SlotId(line.number("s")?);
-                self.observed.push(Observed { name: line.quoted()?, slot });
+                self.observed.push(Observed { name: line.quoted()?.into(), slot });
             }
             "array" => {
                 line.word()?;
@@ -194,7 +194,7 @@ impl Reader {
         let number = line.number("")?;
         line.keyword("=")?;
         let initial = line.literal(ty)?;
-        Ok(Slot { name: line.quoted()?, ty, offset, area, retain, initial, line: number })
+        Ok(Slot { name: line.quoted()?.into(), ty, offset, area, retain, initial, line: number })
     }
 
     fn task(&self, line: &mut Line<'_>) -> Result<Task, Diagnostic> {
@@ -391,7 +391,7 @@ impl<'a> Line<'a> {
         let index = self.number("")?;
         self.keyword("line")?;
         let line = self.number("")?;
-        Ok((index, Origin { label: self.quoted()?, line }))
+        Ok((index, Origin { label: self.quoted()?.into(), line }))
     }
 
     fn literal(&mut self, ty: Elementary) -> Result<Value, Diagnostic> {
@@ -476,15 +476,7 @@ mod tests {
         let names = [("start \"x\"\n\\", Elementary::Bool, Area::Input), ("lamp", Elementary::Bool, Area::Output)];
         let slots = names.map(|(name, ty, area)| {
             let initial = Value::default_of(ty);
-            layout.slot(Slot {
-                name: name.to_owned(),
-                ty,
-                offset: 0,
-                area,
-                retain: area == Area::Output,
-                initial,
-                line: 3,
-            })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: area == Area::Output, initial, line: 3 })
         });
         layout.observe("lamp", slots[1]);
         let mut builder = Builder::new("größe; \u{7f}", layout.finish(None).unwrap());
@@ -494,8 +486,8 @@ mod tests {
         let late = builder.compare(Compare::Greater, now, limit);
         let both = builder.and(a, late);
         builder.store(slots[1], both);
-        builder.end_section(Origin { label: "r10".to_owned(), line: 12 });
-        builder.end_section(Origin { label: "r20".to_owned(), line: 15 });
+        builder.end_section(Origin { label: "r10".into(), line: 12 });
+        builder.end_section(Origin { label: "r20".into(), line: 15 });
         builder.finish()
     }
 
@@ -529,12 +521,13 @@ section 1 line 15 "r20"
         let mut layout = LayoutBuilder::new();
         let (ty, initial) = (Elementary::Time, Value::time(0));
         let name = "#task fast".to_owned();
-        let due = layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
+        let due =
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
         let mut builder = Builder::new("p", layout.finish(None).unwrap());
         builder.end_task("none", None, None);
-        builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+        builder.end_section(Origin { label: "r1".into(), line: 1 });
         builder.end_task("fast", Some(10_000_000), Some(due));
-        builder.end_section(Origin { label: "r2".to_owned(), line: 2 });
+        builder.end_section(Origin { label: "r2".into(), line: 2 });
         builder.end_task("", None, None);
         builder.end_task("last", None, None);
         let program = builder.finish();
@@ -556,7 +549,7 @@ task "last"
     #[test]
     fn origins_that_no_section_has_or_several_share_are_kept() {
         let mut program = small();
-        program.origins.push(Origin { label: "gone".to_owned(), line: 0 });
+        program.origins.push(Origin { label: "gone".into(), line: 0 });
         program.sections[1].origin = 0;
         assert_eq!(read(&print(&program)), Ok(program));
     }
@@ -580,7 +573,7 @@ task "last"
             ] {
                 let mut builder = Builder::new("c", LayoutBuilder::new().finish(None).unwrap());
                 builder.constant(Value::from_bits(ty, bits));
-                builder.end_section(Origin { label: String::new(), line: 0 });
+                builder.end_section(Origin { label: "".into(), line: 0 });
                 let program = builder.finish();
                 assert_eq!(read(&print(&program)).as_ref(), Ok(&program), "{}", print(&program));
             }

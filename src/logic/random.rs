@@ -36,7 +36,7 @@ pub fn program(seed: u64) -> Program {
             let boolean = generator.rng.random_bool(booleans);
             generator.instruction(boolean);
         }
-        generator.builder.end_section(Origin { label: format!("r{section}"), line: section + 1 });
+        generator.builder.end_section(Origin { label: format!("r{section}").into(), line: section + 1 });
     }
     let mut program = generator.builder.finish();
     for (section, start) in program.sections.iter_mut().zip(starts) {
@@ -68,7 +68,7 @@ fn layout(rng: &mut Pcg64) -> (Layout, Vec<SlotId>) {
         let ty = if rng.random_bool(0.5) { Elementary::Bool } else { pick(rng, &Elementary::ALL) };
         let area = pick(rng, &[Area::Input, Area::Output, Area::Memory, Area::State]);
         let slot = layout.slot(Slot {
-            name: format!("x{index}"),
+            name: format!("x{index}").into(),
             ty,
             offset: 0,
             area,
@@ -95,7 +95,7 @@ fn layout(rng: &mut Pcg64) -> (Layout, Vec<SlotId>) {
             let slots: Vec<SlotId> = (0..elements)
                 .map(|element| {
                     let (name, initial) = (format!("array{index}{copy}[{element}]"), value(rng, ty));
-                    layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line: count + index })
+                    layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain, initial, line: count + index })
                 })
                 .collect();
             layout.array(slots[0], elements);
@@ -108,7 +108,7 @@ fn layout(rng: &mut Pcg64) -> (Layout, Vec<SlotId>) {
     let due = (0..2)
         .map(|task| {
             let (name, ty, area, initial) = (format!("#task {task}"), Elementary::Time, Area::State, Value::time(0));
-            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         })
         .collect();
     (layout.finish(None).unwrap_or_else(|_| unreachable!("so few slots fit")), due)

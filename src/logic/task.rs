@@ -83,7 +83,8 @@ mod tests {
         let mut layout = LayoutBuilder::new();
         let (ty, initial) = (Elementary::Time, Value::time(0));
         let name = "#task fast".to_owned();
-        let due = layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
+        let due =
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::State, retain: false, initial, line: 0 });
         (layout.finish(None).unwrap(), due)
     }
 

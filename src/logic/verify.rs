@@ -192,17 +192,16 @@ mod tests {
         let mut layout = LayoutBuilder::new();
         for (name, ty) in [("a", Elementary::Bool), ("n", Elementary::Int), ("due", Elementary::Time)] {
             let initial = Value::default_of(ty);
-            let slot =
-                Slot { name: name.to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+            let slot = Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
             layout.slot(slot);
         }
         let mut builder = Builder::new("p", layout.finish(None).unwrap());
         let (a, n) = (builder.load(SlotId(0)), builder.load(SlotId(1)));
         let both = builder.and(a, a);
         builder.store(SlotId(0), both);
-        builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+        builder.end_section(Origin { label: "r1".into(), line: 1 });
         builder.compare(Compare::Less, n, n);
-        builder.end_section(Origin { label: "r2".to_owned(), line: 2 });
+        builder.end_section(Origin { label: "r2".into(), line: 2 });
         builder.finish()
     }
 
@@ -259,7 +258,7 @@ mod tests {
         for index in 0..6 {
             let ty = if index < 4 { Elementary::Int } else { Elementary::Bool };
             let (name, initial) = (format!("x{index}"), Value::default_of(ty));
-            layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
         }
         for (first, count) in [(0, 2), (2, 2), (1, 2), (2, 1), (4, 2), (0, 2)] {
             layout.array(SlotId(first), count);
@@ -276,7 +275,7 @@ mod tests {
         for (from, expected) in cases {
             let mut builder = Builder::new("p", layout.clone());
             builder.copy_array(ArrayId(0), ArrayId(from), None);
-            builder.end_section(Origin { label: "r1".to_owned(), line: 1 });
+            builder.end_section(Origin { label: "r1".into(), line: 1 });
             let problems = verify(&builder.finish()).err().unwrap_or_default();
             let messages: Vec<String> = problems.iter().map(Problem::to_string).collect();
             assert_eq!(messages, expected.into_iter().collect::<Vec<_>>());

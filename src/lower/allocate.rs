@@ -276,7 +276,7 @@ impl<'a> Allocator<'a> {
         for (name, initial) in part.names.iter().zip(initials) {
             let name = self.unique(name.clone());
             let Part { area, retain, line, .. } = *part;
-            let slot = self.layout.slot(Slot { name, ty, offset: 0, area, retain, initial, line });
+            let slot = self.layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain, initial, line });
             first.get_or_insert(slot);
         }
         let first = first.unwrap_or_else(|| unreachable!("an array has at least one element"));
@@ -286,7 +286,7 @@ impl<'a> Allocator<'a> {
 
     fn hidden(&mut self, name: &str, ty: Elementary, line: u32) -> SlotId {
         let (name, initial) = (self.unique(name.to_owned()), Value::default_of(ty));
-        self.layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line })
+        self.layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::State, retain: false, initial, line })
     }
 
     /// The name itself, or with primes behind it: a foreign name may hold the marks that set slots of a block apart.

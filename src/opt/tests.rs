@@ -21,7 +21,7 @@ fn program(sections: &[fn(&mut Builder, &[SlotId])]) -> Program {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: &str, ty| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
     };
     let mut slots: Vec<SlotId> = ["a", "b", "c", "d", "e"].map(|name| slot(name, Elementary::Bool)).to_vec();
     slots.push(slot("n", Elementary::Int));
@@ -76,7 +76,7 @@ fn over_arrays(section: impl Fn(&mut Builder, [ArrayId; 2], &[SlotId])) -> Progr
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: &str, ty| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
     };
     let names = ["x[0]", "x[1]", "x[2]", "y[0]", "y[1]", "y[2]", "n", "m"];
     let mut slots = names.map(|name| slot(name, Elementary::Int)).to_vec();

@@ -12,7 +12,7 @@ fn layout() -> Layout {
         ("sum", Elementary::Int, Area::Output),
     ] {
         let slot = builder.slot(Slot {
-            name: name.to_owned(),
+            name: name.into(),
             ty,
             offset: 0,
             area,

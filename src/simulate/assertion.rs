@@ -101,7 +101,7 @@ impl Inputs<'_> {
 
     fn reference(&mut self, reference: &mut Reference) {
         let span = reference.span;
-        let Some((mut name, bit)) = whole_name(reference) else {
+        let Some((name, bit)) = whole_name(reference) else {
             let problem = bad(span, "an assertion names variables, with constant indices, and no addresses");
             return self.problems.push(problem.hint("the header of `rung sim`'s trace lists what can be named"));
         };
@@ -110,9 +110,8 @@ impl Inputs<'_> {
             let problem = bad(span, format!("the program has no variable `{name}`"));
             return self.problems.push(problem.hint("the header of `rung sim`'s trace lists what can be named"));
         };
-        name.clone_from(exact);
         let ty = self.layout.slot(*slot).ty;
-        let name = Name::new(name, span);
+        let name = Name::new(exact.clone(), span);
         if self.variables.iter().all(|variable| variable.name.key() != name.key()) {
             self.variables.push(Variable {
                 class: VariableClass::Input,
@@ -185,7 +184,7 @@ fn splice(program: &mut Program, small: &Program) -> Result<SlotId, Vec<Diagnost
         slots.push(match named {
             Some(observed) if slot.area == Area::Input => observed.slot,
             _ => {
-                let name = format!("#assertion {number} {}", slot.name);
+                let name = format!("#assertion {number} {}", slot.name).into();
                 let added = Slot { name, area: Area::State, retain: false, ..slot.clone() };
                 // It holds until it is known not to.
                 let is_result = slot.area == Area::Output && slot.ty == Elementary::Bool;

@@ -84,7 +84,7 @@ impl Stimuli {
         columns.dedup();
         let name = |slot: &SlotId| {
             let observed = layout.observed().iter().find(|observed| observed.slot == *slot);
-            observed.map_or(String::new(), |observed| observed.name.clone())
+            observed.map_or(String::new(), |observed| observed.name.to_string())
         };
         let places: HashMap<SlotId, usize> = columns.iter().copied().zip(1..).collect();
         let mut table = csv::Writer::from_writer(Vec::new());
@@ -179,7 +179,7 @@ impl Reading<'_> {
             if self.diagnostics.len() >= MOST_DIAGNOSTICS {
                 break;
             }
-            match slots.get(&text.to_lowercase()) {
+            match slots.get(text.to_lowercase().as_str()) {
                 None => {
                     let span = self.cell_span(header, cell);
                     let problem = format!("the program has no variable `{text}`");

@@ -24,7 +24,7 @@ fn layout() -> Layout {
     ];
     for (name, ty, area) in variables {
         let initial = Value::default_of(ty);
-        let slot = builder.slot(Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 });
+        let slot = builder.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 });
         builder.observe(name, slot);
     }
     builder.finish(None).expect("a small image")

@@ -100,11 +100,12 @@ fn clock() -> Program {
     let mut layout = LayoutBuilder::new();
     let (name, ty) = ("time".to_owned(), Elementary::Time);
     let initial = Value::default_of(ty);
-    let slot = layout.slot(Slot { name, ty, offset: 0, area: Area::Output, retain: false, initial, line: 1 });
+    let slot =
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Output, retain: false, initial, line: 1 });
     let mut logic = Builder::new("clock", layout.finish(None).expect("it fits"));
     let now = logic.now();
     logic.store(slot, now);
-    logic.end_section(Origin { label: "r1".to_owned(), line: 2 });
+    logic.end_section(Origin { label: "r1".to_owned().into(), line: 2 });
     logic.finish()
 }
 

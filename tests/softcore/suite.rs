@@ -183,7 +183,7 @@ pub(crate) fn places(layout: &Layout) -> Vec<Place> {
     let padding = |range: std::ops::Range<u32>| range.map(|offset| Place { offset, size: 1, name: None });
     for slot in slots {
         places.extend(padding(end..slot.offset));
-        places.push(Place { offset: slot.offset, size: slot.ty.size(), name: Some(slot.name.clone()) });
+        places.push(Place { offset: slot.offset, size: slot.ty.size(), name: Some(slot.name.to_string()) });
         end = slot.offset + slot.ty.size();
     }
     places.extend(padding(end..layout.size()));

@@ -72,7 +72,7 @@ impl Stimuli {
 
 /// Everything that can be observed in a layout, with what it starts with.
 pub(crate) fn observed(layout: &Layout) -> Vec<(String, Value)> {
-    layout.observed().iter().map(|one| (one.name.clone(), layout.slot(one.slot).initial)).collect()
+    layout.observed().iter().map(|one| (one.name.to_string(), layout.slot(one.slot).initial)).collect()
 }
 
 /// The names of the variables that are inputs, global ones first.

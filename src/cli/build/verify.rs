@@ -150,7 +150,7 @@ mod tests {
     fn a_few_of_the_values_that_are_not_proved_are_named() {
         let unproved = |number: u32| Unproved {
             slot: format!("x{number}"),
-            origin: (number > 0).then(|| Origin { label: format!("r{number}"), line: number }),
+            origin: (number > 0).then(|| Origin { label: format!("r{number}").into(), line: number }),
         };
         let report = Report { by_structure: 5, exhaustively: 2, by_sat: 1, unproved: (0..13).map(unproved).collect() };
         let text = said(&report);

@@ -110,7 +110,7 @@ mod tests {
     fn point(name: &str) -> Point {
         let initial = Value::bool(false);
         let (ty, area) = (Elementary::Bool, Area::Output);
-        let slot = Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 };
+        let slot = Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 };
         Point { name: name.to_owned(), slot, key: None }
     }
 

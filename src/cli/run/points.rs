@@ -68,7 +68,7 @@ impl Points {
         let mut keys = KEYS.chars();
         for observed in layout.observed() {
             let slot = layout.slot(observed.slot).clone();
-            let mut point = Point { name: observed.name.clone(), slot, key: None };
+            let mut point = Point { name: observed.name.to_string(), slot, key: None };
             match point.slot.area {
                 Area::Input => {
                     point.key = keys.next();
@@ -101,7 +101,7 @@ impl Points {
     /// What is told of in plain lines: the outputs and the blocks' powers, and first that an index was out of range.
     pub(super) fn told(&self) -> Vec<Point> {
         let powers = self.blocks.iter().flat_map(|block| &block.powers);
-        let fault = self.fault.iter().map(|slot| Point { name: slot.name.clone(), slot: slot.clone(), key: None });
+        let fault = self.fault.iter().map(|slot| Point { name: slot.name.to_string(), slot: slot.clone(), key: None });
         fault.chain(self.outputs.iter().chain(powers).cloned()).collect()
     }
 }

@@ -16,7 +16,7 @@ fn booleans(slots: u32, sections: u32, mut section: impl FnMut(&mut Builder, u32
         .map(|index| {
             let (ty, initial) = (Elementary::Bool, Value::bool(false));
             layout.slot(Slot {
-                name: format!("b{index}"),
+                name: format!("b{index}").into(),
                 ty,
                 offset: 0,
                 area: Area::Memory,
@@ -29,7 +29,7 @@ fn booleans(slots: u32, sections: u32, mut section: impl FnMut(&mut Builder, u32
     let mut logic = Builder::new("booleans", layout.finish(None).expect("a small image"));
     for index in 0..sections {
         section(&mut logic, index, &slots);
-        logic.end_section(Origin { label: format!("rung_{index}"), line: index + 10 });
+        logic.end_section(Origin { label: format!("rung_{index}").into(), line: index + 10 });
     }
     logic.finish()
 }
@@ -158,7 +158,7 @@ fn the_page_on_machine_code_lists_what_branches() {
 fn only_chunks_that_call_helpers_take_the_table_of_them() {
     let real = |name: &str| {
         let (ty, initial) = (Elementary::Real, Value::default_of(Elementary::Real));
-        Slot { name: name.to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 }
+        Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 }
     };
     let mut layout = LayoutBuilder::new();
     let (a, b) = (layout.slot(real("a")), layout.slot(real("b")));
@@ -167,7 +167,7 @@ fn only_chunks_that_call_helpers_take_the_table_of_them() {
         let angle = logic.load(a);
         let result = helper.map_or(angle, |helper| logic.call(helper, angle, None));
         logic.store(b, result);
-        logic.end_section(Origin { label: "r".to_owned(), line: 1 });
+        logic.end_section(Origin { label: "r".into(), line: 1 });
     }
     let mut program = logic.finish();
     program.sections.iter_mut().for_each(|section| section.starts_chunk = true);

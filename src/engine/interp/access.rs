@@ -63,7 +63,7 @@ mod tests {
         for index in 0..8 {
             let (name, ty) = (format!("x{index}"), Elementary::Int);
             let initial = Value::default_of(ty);
-            layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
         }
         // Two that overlap, and one right behind them.
         let arrays = [(3, 2), (1, 3), (5, 2)].map(|(first, count)| layout.array(SlotId(first), count));

@@ -34,12 +34,20 @@ fn program(types: &[Elementary], section: impl Fn(&mut Builder, &[SlotId])) -> P
         .zip(types)
         .map(|(line, ty)| {
             let (name, initial) = (format!("x{line}"), Value::default_of(*ty));
-            layout.slot(Slot { name, ty: *ty, offset: 0, area: Area::Memory, retain: false, initial, line })
+            layout.slot(Slot {
+                name: name.into(),
+                ty: *ty,
+                offset: 0,
+                area: Area::Memory,
+                retain: false,
+                initial,
+                line,
+            })
         })
         .collect();
     let mut builder = Builder::new("p", layout.finish(None).unwrap());
     section(&mut builder, &slots);
-    builder.end_section(Origin { label: "r".to_owned(), line: 1 });
+    builder.end_section(Origin { label: "r".into(), line: 1 });
     builder.finish()
 }
 
@@ -120,10 +128,10 @@ fn a_constant_is_the_same_where_something_wider_lay_before() {
         let sum = builder.binary(Binary::Add, wide, other);
         let chosen = builder.binary(Binary::Subtract, sum, wide);
         builder.store(slots[0], chosen);
-        builder.end_section(Origin { label: "wide".to_owned(), line: 1 });
+        builder.end_section(Origin { label: "wide".into(), line: 1 });
         // The next chunk uses the same cells.
         for _ in 1..CHUNK_SECTIONS {
-            builder.end_section(Origin { label: "empty".to_owned(), line: 1 });
+            builder.end_section(Origin { label: "empty".into(), line: 1 });
         }
         let [a, b] = [2, 3].map(|index| builder.load(slots[index]));
         let holds = builder.bool(true);
@@ -155,7 +163,7 @@ fn a_constant_is_itself_whatever_lay_in_its_cell_before() {
         let sum = builder.binary(Binary::Add, number, number);
         let twice = builder.binary(Binary::Add, sum, sum);
         builder.store(slots[1], twice);
-        builder.end_section(Origin { label: "first".to_owned(), line: 1 });
+        builder.end_section(Origin { label: "first".into(), line: 1 });
         let truth = builder.bool(true);
         let one = builder.convert(truth, Elementary::Lint);
         builder.store(slots[2], one);

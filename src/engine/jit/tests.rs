@@ -205,7 +205,7 @@ fn counting() -> Program {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: &str, ty| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area: Area::State, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::State, retain: false, initial, line: 0 })
     };
     let runs = ["fast", "slow", "always"].map(|name| slot(name, Elementary::Lint));
     let due = ["#task fast", "#task slow"].map(|name| slot(name, Elementary::Time));
@@ -258,7 +258,7 @@ fn copying(ty: Elementary, count: u32) -> Program {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: String, ty| {
         let (area, initial) = (Area::Memory, Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
     };
     let condition = slot("condition".into(), Elementary::Bool);
     let [from, to] =
@@ -340,7 +340,7 @@ fn no_index_reaches_beyond_its_array() {
         let mut layout = LayoutBuilder::new();
         let mut slot = |name: String, ty| {
             let (area, initial) = (Area::Memory, Value::default_of(ty));
-            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         };
         let (index, before) = (slot("index".into(), Elementary::Lint), slot("before".into(), ty));
         let elements: Vec<_> = (0..COUNT).map(|element| slot(format!("a[{element}]"), ty)).collect();

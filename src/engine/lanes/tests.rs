@@ -118,7 +118,7 @@ fn latches(seed: u64) -> Program {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: String, ty, area, initial: u64| {
         let initial = Value::from_bits(ty, initial);
-        layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
     };
     let inputs: Vec<SlotId> = (0..6).map(|i| slot(format!("i{i}"), Elementary::Bool, Area::Input, 0)).collect();
     let outputs: Vec<SlotId> = (0..12).map(|q| slot(format!("q{q}"), Elementary::Bool, Area::Output, 0)).collect();
@@ -174,7 +174,7 @@ fn latches(seed: u64) -> Program {
             let made = builder.select(when, ten, old);
             builder.store(number, made);
         }
-        builder.end_section(Origin { label: format!("r{index}"), line: 0 });
+        builder.end_section(Origin { label: format!("r{index}").into(), line: 0 });
         if index == 0 && rng.random_bool(0.3) {
             builder.end_task("slow", Some(25), Some(due));
         }

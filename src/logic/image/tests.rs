@@ -3,7 +3,7 @@
 use super::*;
 
 fn slot(name: &str, ty: Elementary, area: Area, retain: bool) -> Slot {
-    Slot { name: name.to_owned(), ty, offset: 0, area, retain, initial: Value::default_of(ty), line: 0 }
+    Slot { name: name.into(), ty, offset: 0, area, retain, initial: Value::default_of(ty), line: 0 }
 }
 
 fn laid_out(slots: &[Slot], earlier: Option<&EarlierLayout>) -> Layout {

@@ -114,7 +114,7 @@ impl Proof<'_> {
 
     fn unproved(&mut self, slot: SlotId) {
         let name = self.before.layout.slot(slot).name.clone();
-        self.report.unproved.push(Unproved { slot: name, origin: self.origin(slot) });
+        self.report.unproved.push(Unproved { slot: name.to_string(), origin: self.origin(slot) });
     }
 
     /// Counts all that is stored as unproved.

@@ -22,7 +22,7 @@ fn program(types: &[Elementary], result: Elementary, section: impl Fn(&mut Build
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: String, ty| {
         let initial = Value::default_of(ty);
-        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
     };
     let slots: Vec<SlotId> = types.iter().enumerate().map(|(index, ty)| slot(format!("x{index}"), *ty)).collect();
     let result = slot("y".to_owned(), result);

@@ -80,7 +80,7 @@ impl<'a> Machine<'a> {
         let (place, slot) =
             (0..).zip(self.layout.slots()).find(|(_, slot)| slot.read(&expected) != slot.read(&actual))?;
         let because = changed(&image).into_iter().map(|id| self.layout.slot(id));
-        let because = because.map(|slot| (slot.name.clone(), slot.read(&image))).collect();
+        let because = because.map(|slot| (slot.name.to_string(), slot.read(&image))).collect();
         let sections = [(before, part.before.clone()), (after, part.after.clone())];
         Some(Difference {
             origin: last_store(sections, SlotId(place)),

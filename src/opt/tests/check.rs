@@ -18,7 +18,7 @@ fn a_difference_is_named_by_the_rung_that_stores_it() {
             logic.store(s[3], both);
         },
     ]);
-    (before.origins[1].label, before.origins[1].line) = ("wrong".to_owned(), 7);
+    (before.origins[1].label, before.origins[1].line) = ("wrong".into(), 7);
     assert_eq!(difference(&before, &before, 8), None);
     let mut after = before.clone();
     for instruction in after.instructions.iter_mut().skip(4) {

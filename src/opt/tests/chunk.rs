@@ -11,7 +11,7 @@ fn rungs(contacts: usize, labels: impl Iterator<Item = String>, reads_last: fn(u
     let slots: Vec<SlotId> = (0..=labels.len())
         .map(|number| {
             let (name, ty, initial) = (format!("b{number}"), Elementary::Bool, Value::bool(false));
-            layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
         })
         .collect();
     let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
@@ -22,7 +22,7 @@ fn rungs(contacts: usize, labels: impl Iterator<Item = String>, reads_last: fn(u
             power = logic.and(power, contact);
         }
         logic.store(slots[number + 1], power);
-        logic.end_section(Origin { label, line: 1 });
+        logic.end_section(Origin { label: label.into(), line: 1 });
     }
     logic.finish()
 }
@@ -33,7 +33,7 @@ fn labels(count: usize) -> impl Iterator<Item = String> {
 
 /// The labels of the rungs that start a chunk.
 fn starts(program: &Program) -> Vec<String> {
-    program.chunks().iter().map(|chunk| program.origins[chunk.start].label.clone()).collect()
+    program.chunks().iter().map(|chunk| program.origins[chunk.start].label.to_string()).collect()
 }
 
 #[test]
@@ -78,7 +78,8 @@ fn a_rung_more_moves_the_ends_near_it_and_no_others() {
 fn values_that_cross_keep_sections_together_and_tasks_never_share_a_chunk() {
     let mut layout = LayoutBuilder::new();
     let (name, ty, initial) = ("a".to_owned(), Elementary::Bool, Value::bool(false));
-    let slot = layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
+    let slot =
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 });
     let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
     let first = logic.load(slot);
     for task in 0..2 {

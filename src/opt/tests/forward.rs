@@ -95,7 +95,7 @@ fn an_indexed_store_may_change_every_element_and_an_indexed_load_sees_all() {
     let mut layout = LayoutBuilder::new();
     let mut slot = |name: &str, ty| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
     };
     let (first, second) = (slot("x", Elementary::Int), slot("y", Elementary::Int));
     let (other, index) = (slot("z", Elementary::Int), slot("i", Elementary::Lint));

@@ -11,7 +11,7 @@ fn program(op: Binary, ty: Elementary, constant: u64) -> Program {
     let mut layout = LayoutBuilder::new();
     let [x, y, z] = ["x", "y", "z"].map(|name| {
         let (name, initial) = (name.to_owned(), Value::default_of(ty));
-        layout.slot(Slot { name, ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
+        layout.slot(Slot { name: name.into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 })
     });
     let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
     let operand = logic.load(x);

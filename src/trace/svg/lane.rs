@@ -139,7 +139,7 @@ mod tests {
     fn lane(ty: Elementary, shortest: i64) -> Lane {
         let mut builder = LayoutBuilder::new();
         let initial = Value::default_of(ty);
-        let slot = Slot { name: "x".to_owned(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
+        let slot = Slot { name: "x".into(), ty, offset: 0, area: Area::Memory, retain: false, initial, line: 0 };
         let slot = builder.slot(slot);
         builder.observe("x", slot);
         Lane::new(Signal::all(&builder.finish(None).expect("a small image")).remove(0), shortest)

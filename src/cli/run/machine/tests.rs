@@ -9,7 +9,7 @@ fn layout() -> Layout {
     let mut builder = LayoutBuilder::new();
     for (name, area) in [("start", Area::Input), ("motor", Area::Output)] {
         let (ty, initial) = (Elementary::Bool, Value::bool(false));
-        let slot = builder.slot(Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 });
+        let slot = builder.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 });
         builder.observe(name, slot);
     }
     builder.finish(None).expect("a small image")
@@ -17,7 +17,7 @@ fn layout() -> Layout {
 
 fn point(layout: &Layout, index: usize) -> Point {
     let slot = layout.slots()[index].clone();
-    Point { name: slot.name.clone(), slot, key: None }
+    Point { name: slot.name.to_string(), slot, key: None }
 }
 
 fn timing(ends_at: Option<u64>, watchdog: u64) -> Timing {

@@ -190,7 +190,7 @@ mod tests {
 
     fn point(name: &str, ty: Elementary, offset: u32, key: Option<char>) -> Point {
         let initial = Value::from_bits(ty, 0);
-        let slot = Slot { name: name.to_owned(), ty, offset, area: Area::Memory, retain: false, initial, line: 0 };
+        let slot = Slot { name: name.into(), ty, offset, area: Area::Memory, retain: false, initial, line: 0 };
         Point { name: name.to_owned(), slot, key }
     }
 

@@ -90,7 +90,7 @@ mod tests {
         let mut layout = LayoutBuilder::new();
         let mut slot = |name: &str, ty, area| {
             let initial = Value::default_of(ty);
-            layout.slot(Slot { name: name.to_owned(), ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         };
         let [a, b] = ["a", "b"].map(|name| slot(name, Elementary::Bool, Area::Input));
         let [start, elapsed] = ["start", "elapsed"].map(|name| slot(name, Elementary::Time, Area::Memory));
@@ -105,7 +105,7 @@ mod tests {
         let sets = sets(&mut builder, a, b);
         let set = builder.select(sets, now, old);
         builder.store(start, set);
-        builder.end_section(Origin { label: "r".to_owned(), line: 0 });
+        builder.end_section(Origin { label: "r".into(), line: 0 });
         let program = builder.finish();
         let is_store = |index: &usize| matches!(program.instructions[*index].op, Op::Store(..));
         let stores: Vec<usize> = (0..program.instructions.len()).filter(is_store).collect();

@@ -77,7 +77,7 @@ fn arrays_are_proved_element_by_element_however_long_they_are() {
         let mut layout = LayoutBuilder::new();
         let mut slot = |name: String, ty: Elementary| {
             let (area, initial) = (crate::logic::Area::Memory, Value::default_of(ty));
-            layout.slot(Slot { name, ty, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty, offset: 0, area, retain: false, initial, line: 0 })
         };
         let elements: Vec<SlotId> = (0..count).map(|element| slot(format!("x[{element}]"), Int)).collect();
         let (index, enable, result) = (slot("i".into(), Lint), slot("e".into(), Bool), slot("y".into(), Int));
@@ -117,7 +117,7 @@ fn a_section_that_is_cut_is_proved_against_the_whole() {
         .map(|index| {
             let (name, initial) = (format!("x{index}"), Value::bool(false));
             let area = crate::logic::Area::Memory;
-            layout.slot(Slot { name, ty: Bool, offset: 0, area, retain: false, initial, line: 0 })
+            layout.slot(Slot { name: name.into(), ty: Bool, offset: 0, area, retain: false, initial, line: 0 })
         })
         .collect();
     let mut logic = Builder::new("p", layout.finish(None).expect("a small image"));
@@ -127,7 +127,7 @@ fn a_section_that_is_cut_is_proved_against_the_whole() {
             let value = if place % 3 == 0 { logic.or(a, b) } else { logic.and(a, b) };
             logic.store(slots[place * 3 % 20], value);
         }
-        logic.end_section(Origin { label: format!("r{length}"), line: 1 });
+        logic.end_section(Origin { label: format!("r{length}").into(), line: 1 });
     }
     let before = logic.finish();
     let (after, report) = optimise_proved(before.clone(), PASSES).expect("no difference");
