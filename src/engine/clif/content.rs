@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::place;
 use crate::elementary::Elementary;
 use crate::logic::{ArrayId, Instruction, Layout, Op, Program, SlotId, ValueId};
+use crate::parallel;
 
 /// Two programs whose chunks are compared.
 pub(in crate::engine) struct Comparison<'a> {
@@ -31,19 +32,30 @@ impl<'a> Comparison<'a> {
         };
         let same_slots = u32::try_from(same_slots).unwrap_or(u32::MAX);
         let mut found = Self { programs: [one, other], same_slots, same_first: 0, same_last: 0 };
-        let (instructions, others) = (&one.instructions, &other.instructions);
-        let same = instructions.iter().zip(others).take_while(|(a, b)| found.instructions(**a, **b, [0; 2])).count();
-        let ends = one.sections.iter().zip(&other.sections).map(|(a, b)| [a.end as usize, b.end as usize]);
-        found.same_first = ends.clone().take_while(|[a, b]| a == b && *a <= same).count();
-        let lengths = [instructions.len(), others.len()];
-        let backwards = instructions.iter().rev().zip(others.iter().rev());
-        let same = backwards.take_while(|(a, b)| found.instructions(**a, **b, lengths)).count();
-        let starts = |program: &'a Program, length: usize| {
-            (0..program.sections.len()).rev().map(move |section| length - program.section_range(section).start)
-        };
-        let starts = starts(one, lengths[0]).zip(starts(other, lengths[1]));
-        found.same_last = starts.take_while(|(a, b)| a == b && *a <= same).count();
+        let same = parallel::each(2, || (), |(), way| if way == 0 { found.same_first() } else { found.same_last() });
+        (found.same_first, found.same_last) = (same[0], same[1]);
         found
+    }
+
+    /// How many sections are the same from the first on.
+    fn same_first(&self) -> usize {
+        let [one, other] = self.programs;
+        let pairs = one.instructions.iter().zip(&other.instructions);
+        let same = pairs.take_while(|(a, b)| self.instructions(**a, **b, [0; 2])).count();
+        let ends = one.sections.iter().zip(&other.sections).map(|(a, b)| [a.end as usize, b.end as usize]);
+        ends.take_while(|[a, b]| a == b && *a <= same).count()
+    }
+
+    /// How many sections are the same up to the last.
+    fn same_last(&self) -> usize {
+        let lengths = self.programs.map(|program| program.instructions.len());
+        let [ones, others] = self.programs.map(|program| program.instructions.iter().rev());
+        let same = ones.zip(others).take_while(|(a, b)| self.instructions(**a, **b, lengths)).count();
+        let [ones, others] = self.programs.map(|program| {
+            let length = program.instructions.len();
+            (0..program.sections.len()).rev().map(move |section| length - program.section_range(section).start)
+        });
+        ones.zip(others).take_while(|(a, b)| a == b && *a <= same).count()
     }
 
     /// Whether sections of the first program become the same code as those of the second, on one target.
@@ -83,7 +95,12 @@ impl<'a> Comparison<'a> {
     }
 
     /// Whether two instructions are the same: their operands are if they are as far from two places.
+    #[inline]
     fn instructions(&self, a: Instruction, b: Instruction, [here, there]: [usize; 2]) -> bool {
+        // Nearly all, where an edit adds and removes no instruction.
+        if here == there && a == b && self.reaches_the_same(a.op) {
+            return true;
+        }
         let near = |a: ValueId, b: ValueId| a.index() + there == b.index() + here;
         a.ty == b.ty
             && match (a.op, b.op) {
@@ -124,6 +141,24 @@ impl<'a> Comparison<'a> {
                     _,
                 ) => false,
             }
+    }
+
+    /// Whether an operation of both programs is known to reach the same bytes in them.
+    #[inline]
+    fn reaches_the_same(&self, op: Op) -> bool {
+        match op {
+            Op::Load(slot) | Op::Store(slot, _) => slot.0 < self.same_slots,
+            Op::LoadIndexed(..) | Op::StoreIndexed(..) | Op::CopyArray(..) => false,
+            Op::Constant(_)
+            | Op::Now
+            | Op::Unary(..)
+            | Op::Binary(..)
+            | Op::Compare(..)
+            | Op::Select(..)
+            | Op::Convert(_)
+            | Op::Reinterpret(_)
+            | Op::Call(..) => true,
+        }
     }
 
     fn slots(&self, a: SlotId, b: SlotId) -> bool {
