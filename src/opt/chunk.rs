@@ -4,15 +4,16 @@
 //! the rung's label decides. So where chunks end depends on nothing far away, and an edit of one rung moves no end but
 //! its own chunk's: all other chunks compile to what they were. Values that cross sections keep these together.
 //!
-//! The limits are in instructions as they are lowered, some 2000 of which make a chunk: smaller ones save and restore
-//! registers more often, larger ones reach more of the image than a few pointers bring near.
+//! The limits are in instructions as they are lowered, some 1500 of which make a chunk: smaller ones save and restore
+//! registers more often; larger ones run no faster, reach more of the image than a few pointers bring near, and take longer
+//! to compile again after an edit.
 
 use super::forward::WINDOW;
 use crate::logic::{Op, Program};
 
 /// Instructions from which on a chunk may end, and at which it must.
-const LEAST: usize = 1600;
-const MOST: usize = 3200;
+const LEAST: usize = 1000;
+const MOST: usize = 2000;
 
 /// Sections at which a chunk must end, too: of what nearly empty rungs are, few instructions are many.
 const SECTIONS: usize = 512;

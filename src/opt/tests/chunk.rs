@@ -45,7 +45,7 @@ fn chunks_are_of_a_length_whatever_the_rungs_are() {
         for chunk in &chunks[..chunks.len() - 1] {
             let length = program.instruction_range(chunk.clone()).len();
             assert!(
-                chunk.len() == 512 || (1600..=3200).contains(&length),
+                chunk.len() == 512 || (1000..=2000).contains(&length),
                 "{contacts} contacts: {length} in {chunk:?}"
             );
         }
