@@ -2,7 +2,7 @@
 //!
 //! A pass is a pure function from a verified program to a verified one that leaves the same image after every scan,
 //! with the same layout, tasks and origins. Only the first two change where sections and chunks end. None may ever move a
-//! value out of its chunk, or look beyond one: behind those two, [parts] of a program are changed on all cores.
+//! value out of its chunk, or look beyond one: behind those two, parts of a program are changed on all cores.
 //!
 //! In a debug build every pass is [checked](check) against the program that it was given.
 
