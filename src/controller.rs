@@ -146,7 +146,8 @@ impl Controller {
     fn start(mut loaded: Loaded, settings: Settings) -> Result<Self, Error> {
         let checked = loaded.check_to_run(settings.allow_missing);
         let lowered = checked.map(|checked| lower(&checked, &loaded.source, settings.earlier.as_ref()));
-        let Loaded { source, mut diagnostics, .. } = loaded;
+        let Loaded { source, mut diagnostics, program: drawing, .. } = loaded;
+        drop(drawing);
         let program = match lowered {
             Some(Ok(program)) => optimise(program),
             refused => {

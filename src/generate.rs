@@ -157,7 +157,7 @@ impl Generator {
         };
         let timer = self.has_timer(rung).then(|| self.timer(rung));
         let target = reference(coil_name(rung));
-        // Of a million rungs, what a vector holds in reserve is a hundred megabytes.
+        // Of a million rungs, what vectors hold in reserve is much.
         elements.reserve_exact(2);
         elements.extend(timer);
         elements.push(element(ElementKind::Coil { kind: CoilKind::Plain, target }));

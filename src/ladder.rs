@@ -29,7 +29,10 @@ pub use types::{Dimension, Field, TypeDeclaration, TypeKind, TypeReference};
 
 use std::fmt;
 
-use lean_string::LeanString;
+/// What names are: text that stands in place where it is short.
+pub use lean_string::LeanString;
+/// A list that is a pointer where it is empty.
+pub use thin_vec::ThinVec;
 
 use crate::source::Span;
 

@@ -60,7 +60,8 @@ pub fn lower(checked: &Checked, source: &Source, earlier: Option<&EarlierLayout>
         counters: Vec::new(),
     };
     let rungs = |program: &ProgramInstance| checked.unit(program.unit).rungs.len();
-    lowering.logic.reserve(INSTRUCTIONS_PER_RUNG * checked.programs().iter().map(rungs).sum::<usize>());
+    let rungs = checked.programs().iter().map(rungs).fold(0, usize::saturating_add);
+    lowering.logic.reserve(INSTRUCTIONS_PER_RUNG.saturating_mul(rungs));
     for ((task, number), due) in checked.tasks().iter().zip(0..).zip(&slots.due) {
         for (program, frame) in checked.programs().iter().zip(&slots.programs) {
             if program.task.0 == number {

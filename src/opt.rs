@@ -1,8 +1,8 @@
 //! The optimiser: an ordered list of small passes over logic.
 //!
 //! A pass is a pure function from a verified program to a verified one that leaves the same image after every scan,
-//! with the same layout, tasks and origins. Only the first two change where sections and chunks end. None may ever move a
-//! value out of its chunk, or look beyond one: behind those two, parts of a program are changed on all cores.
+//! with the same layout, tasks and origins. Only those that look at all of it change where sections and chunks end. None may
+//! ever move a value out of its chunk, and the others look at no more than one, so that parts of a program are changed on all cores.
 //!
 //! In a debug build every pass is [checked](check) against the program that it was given.
 
@@ -32,39 +32,58 @@ pub struct Pass {
     pub name: &'static str,
     /// What it does.
     pub run: fn(Program) -> Program,
+    /// Whether it looks at all of a program: others look at no more than a chunk at a time.
+    pub of_all: bool,
+}
+
+impl Pass {
+    const fn of_all(name: &'static str, run: fn(Program) -> Program) -> Self {
+        Self { name, run, of_all: true }
+    }
+
+    const fn of_chunks(name: &'static str, run: fn(Program) -> Program) -> Self {
+        Self { name, run, of_all: false }
+    }
 }
 
 /// The passes, in order.
 pub const PASSES: &[Pass] = &[
-    Pass { name: "cut", run: cut::cut },
-    Pass { name: "chunk", run: chunk::chunk },
-    Pass { name: "fold", run: fold::fold },
-    Pass { name: "forward", run: forward::forward },
-    Pass { name: "simplify", run: simplify::simplify },
-    Pass { name: "narrow", run: narrow::narrow },
-    Pass { name: "reduce", run: reduce::reduce },
-    Pass { name: "share", run: share::share },
-    Pass { name: "algebra", run: algebra::algebra },
-    Pass { name: "sweep", run: sweep::sweep },
+    Pass::of_all("cut", cut::cut),
+    Pass::of_all("chunk", chunk::chunk),
+    Pass::of_chunks("fold", fold::fold),
+    Pass::of_chunks("forward", forward::forward),
+    Pass::of_chunks("simplify", simplify::simplify),
+    Pass::of_chunks("narrow", narrow::narrow),
+    Pass::of_chunks("reduce", reduce::reduce),
+    Pass::of_chunks("share", share::share),
+    Pass::of_chunks("algebra", algebra::algebra),
+    Pass::of_chunks("sweep", sweep::sweep),
 ];
-
-/// How many passes, the first ones, look at all of a program.
-const OF_ALL: usize = 2;
 
 /// Runs every pass.
 pub fn optimise(program: Program) -> Program {
-    optimise_with(program, |_| true)
+    optimise_by(program, PASSES)
 }
 
 /// Runs the passes that are wanted, so that one can see what another is good for.
 ///
 /// # Panics
+/// As [`optimise_by`].
+pub fn optimise_with(program: Program, wanted: impl Fn(&Pass) -> bool) -> Program {
+    let passes: Vec<Pass> = PASSES.iter().copied().filter(wanted).collect();
+    optimise_by(program, &passes)
+}
+
+/// Runs passes in order, on all cores where they look at a chunk at a time.
+///
+/// # Panics
 /// In a debug build, when a pass changed what the program computes.
-pub fn optimise_with(program: Program, wanted: impl Fn(&Pass) -> bool + Sync) -> Program {
-    let run = |passes: &[Pass], program: Program| passes.iter().filter(|pass| wanted(pass)).fold(program, checked);
-    let (whole, of_chunks) = PASSES.split_at(OF_ALL);
-    let program = run(whole, program);
-    parts::each(program, |part| run(of_chunks, part))
+pub fn optimise_by(program: Program, passes: &[Pass]) -> Program {
+    let run = |passes: &[Pass], program: Program| passes.iter().fold(program, checked);
+    passes.chunk_by(|pass, next| pass.of_all == next.of_all).fold(program, |program, passes| match passes {
+        [Pass { of_all: false, .. }, ..] => parts::each(program, |part| run(passes, part)),
+        _ => run(passes, program),
+    })
 }
 
 /// Runs a pass, and in a debug build checks what it did.
@@ -80,6 +99,6 @@ fn checked(program: Program, pass: &Pass) -> Program {
     after
 }
 
-/// Instructions up to which a debug build checks a pass, and on how many images.
+/// Instructions up to which a debug build checks what a pass makes of a program or a part of one, and on how many images.
 const CHECKED: usize = 20_000;
 const IMAGES: u64 = 2;

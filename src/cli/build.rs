@@ -19,7 +19,7 @@ use crate::load::Loaded;
 use crate::logic::image::EarlierLayout;
 use crate::logic::{self, Program, map};
 use crate::lower::lower;
-use crate::opt::{PASSES, Pass};
+use crate::opt::{PASSES, Pass, optimise_by};
 use crate::source::{Source, Span};
 
 /// The stage before any pass, for `--after`.
@@ -110,7 +110,7 @@ fn build(arguments: &Arguments, passes: &[Pass]) -> Result<(), Failure> {
         super::report(&said);
         program
     } else {
-        passes.iter().fold(program, |program, pass| (pass.run)(program))
+        optimise_by(program, passes)
     };
     let place = |line, name: &str| place_of(&source, line, name);
     let emit = arguments.emit();

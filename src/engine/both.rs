@@ -111,13 +111,13 @@ impl Difference {
         let id = SlotId(u32::try_from(index).unwrap_or(u32::MAX));
         let observed = layout.observed().iter().find(|observed| observed.slot == id);
         let name = match (observed, slot.area) {
-            (Some(observed), _) => observed.name.clone(),
-            (None, Area::State) => format!("{} (a state of a block or an edge)", slot.name).into(),
-            (None, _) => slot.name.clone(),
+            (Some(observed), _) => observed.name.to_string(),
+            (None, Area::State) => format!("{} (a state of a block or an edge)", slot.name),
+            (None, _) => slot.name.to_string(),
         };
         Some(Self {
             slot: Some(id),
-            name: name.to_string(),
+            name,
             values: Some((slot.read(first), slot.read(second))),
             bytes: (first[bytes(slot)].to_vec(), second[bytes(slot)].to_vec()),
             rung,

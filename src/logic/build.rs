@@ -32,9 +32,10 @@ impl Builder {
         Self { program, chunk_sections: 0 }
     }
 
-    /// Makes room for so many instructions. Growing step by step would copy them, and hold them twice at the end.
+    /// Makes room for so many instructions, where there is as much. Growing step by step would copy them, and hold them
+    /// twice at the end.
     pub fn reserve(&mut self, instructions: usize) {
-        self.program.instructions.reserve(instructions);
+        let _ = self.program.instructions.try_reserve(instructions);
     }
 
     /// The image that it is built over.

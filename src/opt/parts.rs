@@ -10,13 +10,18 @@ use std::sync::Arc;
 use crate::logic::{Instruction, Program, Section, Task, ValueId};
 use crate::parallel;
 
-/// Instructions of a part, at least, and the most parts: each takes time for every slot.
+/// Instructions of a part, at least, and about how many parts there are at the most: each takes time for every slot.
 const LEAST: usize = 8192;
 const MOST: usize = 64;
 
 /// Changes every part of a program. A small one is its only part.
-pub(super) fn each(mut program: Program, change: impl Fn(Program) -> Program + Sync) -> Program {
-    let parts = parts(&program);
+pub(super) fn each(program: Program, change: impl Fn(Program) -> Program + Sync) -> Program {
+    let parts = parts(&program, LEAST.max(program.instructions.len() / MOST));
+    changed(program, parts, change)
+}
+
+/// Changes given parts of a program, which together are all of it.
+fn changed(mut program: Program, parts: Vec<Range<usize>>, change: impl Fn(Program) -> Program + Sync) -> Program {
     if parts.len() < 2 {
         return change(program);
     }
@@ -41,9 +46,8 @@ pub(super) fn each(mut program: Program, change: impl Fn(Program) -> Program + S
     program
 }
 
-/// The sections of each part.
-fn parts(program: &Program) -> Vec<Range<usize>> {
-    let least = LEAST.max(program.instructions.len() / MOST);
+/// The sections of each part, of so many instructions at least.
+fn parts(program: &Program, least: usize) -> Vec<Range<usize>> {
     let mut parts: Vec<Range<usize>> = Vec::new();
     for chunk in program.chunks() {
         match parts.last_mut() {
@@ -81,22 +85,23 @@ fn moved(Instruction { ty, op }: Instruction, to: impl Fn(u32) -> u32) -> Instru
 
 #[cfg(test)]
 mod tests {
-    use super::{each, parts};
-    use crate::generate::{Options, generate};
-    use crate::opt::{OF_ALL, PASSES};
-    use crate::source::Source;
-    use crate::{check, lower};
+    use super::{changed, each, parts};
+    use crate::logic::random;
+    use crate::opt::PASSES;
 
     #[test]
     fn what_passes_make_of_the_parts_is_what_they_make_of_the_whole() {
-        let program = generate(&Options { rungs: 3000, timers: 500, ..Options::default() }).expect("options that fit");
-        let checked = check::check(&program).0.expect("no errors");
-        let lowered = lower::lower(&checked, &Source::new("parts", ""), None).expect("a small image");
-        let (whole, of_chunks) = PASSES.split_at(OF_ALL);
-        let chunked = whole.iter().fold(lowered, |program, pass| (pass.run)(program));
-        assert!(parts(&chunked).len() > 3, "{:?}", parts(&chunked));
-        assert_eq!(each(chunked.clone(), |part| part), chunked, "apart and together again is the identity");
-        let run = |program| of_chunks.iter().fold(program, |program, pass| (pass.run)(program));
-        assert_eq!(each(chunked.clone(), run), run(chunked));
+        let mut apart = 0;
+        for seed in 0..200 {
+            let program = random::program(seed);
+            let parts = parts(&program, 1);
+            apart += usize::from(parts.len() > 1);
+            let of_chunks = || PASSES.iter().filter(|pass| !pass.of_all);
+            let run = |program| of_chunks().fold(program, |program, pass| (pass.run)(program));
+            assert_eq!(changed(program.clone(), parts.clone(), |part| part), program, "of seed {seed}");
+            assert_eq!(changed(program.clone(), parts, run), run(program.clone()), "of seed {seed}");
+            assert_eq!(each(program.clone(), run), run(program), "of seed {seed}");
+        }
+        assert!(apart > 50, "only {apart} programs have more than one chunk, which shows little");
     }
 }

@@ -96,7 +96,7 @@ mod tests {
         let words =
             ["build", &path(&source), "--verify", "-o", &path(&object), "--map", &path(&map)].map(str::to_owned);
         let arguments = Command::parse_from(words).build;
-        let outcome = build(&arguments, &[Pass { name: "test", run }]);
+        let outcome = build(&arguments, &[Pass { name: "test", run, of_all: true }]);
         (outcome, object.exists() || map.exists())
     }
 

@@ -14,7 +14,8 @@ use crate::parallel;
 /// Two programs whose chunks are compared.
 pub(in crate::engine) struct Comparison<'a> {
     programs: [&'a Program; 2],
-    /// How many slots from the first on lie at the same place in both: all old ones after an edit. Others are looked up.
+    /// How many slots from the first on lie at the same place in both: all before the first that an edit adds or takes away.
+    /// Others are looked up.
     same_slots: u32,
     /// How many sections are the same in both, from the first on and up to the last. After an edit that is all but a few, so
     /// that each is looked at once, and not again as what a chunk may have behind it.
@@ -26,9 +27,10 @@ impl<'a> Comparison<'a> {
     /// Looks for what two programs have in common.
     pub(in crate::engine) fn new(one: &'a Program, other: &'a Program) -> Self {
         let slots = one.layout.slots().iter().zip(other.layout.slots());
-        let same_slots = match Arc::ptr_eq(&one.layout, &other.layout) {
-            true => one.layout.slots().len(),
-            false => slots.take_while(|(a, b)| (a.offset, a.ty) == (b.offset, b.ty)).count(),
+        let same_slots = if Arc::ptr_eq(&one.layout, &other.layout) {
+            one.layout.slots().len()
+        } else {
+            slots.take_while(|(a, b)| (a.offset, a.ty) == (b.offset, b.ty)).count()
         };
         let same_slots = u32::try_from(same_slots).unwrap_or(u32::MAX);
         let mut found = Self { programs: [one, other], same_slots, same_first: 0, same_last: 0 };

@@ -84,7 +84,8 @@ impl Call {
         if size == 0 {
             return Ok(Vec::new());
         }
-        let mut pages = MmapMut::map_anon(size)?;
+        // Systems lay what is a multiple of a large page at one.
+        let mut pages = MmapMut::map_anon(if size < LARGE { size } else { size.next_multiple_of(LARGE) })?;
         if size >= LARGE {
             ask_for_large_pages(&pages);
         }

@@ -414,10 +414,9 @@ fn is_read_data(tag: &BytesStart<'_>) -> bool {
 /// Whether nothing but blanks is there: between most elements, with the indentation of the next.
 fn is_blank(text: &str) -> bool {
     // A whole block at a time, which a loop that may end at each byte is not.
-    let blocks = text.as_bytes().chunks(16);
     let ascii =
         |block: &[u8]| block.iter().fold(true, |blank, byte| blank & matches!(byte, b' ' | b'\t' | b'\n' | b'\r'));
-    blocks.into_iter().all(ascii) || text.trim_start().is_empty()
+    text.as_bytes().chunks(16).all(ascii) || text.trim_start().is_empty()
 }
 
 /// A name without its prefix. Names are short, so that a search made for long texts would take longer.

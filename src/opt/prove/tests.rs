@@ -14,7 +14,7 @@ type Run = fn(Program) -> Program;
 
 /// A pass for tests.
 fn pass(run: Run) -> Pass {
-    Pass { name: "test", run }
+    Pass { name: "test", run, of_all: true }
 }
 
 /// A program of one section over slots `x0`, `x1`, ... of some types, and `y` for the result.

@@ -281,7 +281,7 @@ impl Page<'_> {
                 });
             }
         };
-        // With one wire, as most pins have, all of it is short.
+        // With one wire at the most, as nearly all pins have, all of it is short.
         match wires.len() {
             0 | 1 => xml.on_one_line("connectionPointIn", &[], write),
             _ => xml.element("connectionPointIn", &[], write),
