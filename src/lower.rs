@@ -39,7 +39,8 @@ use crate::logic::image::{EarlierLayout, ImageTooLarge};
 use crate::logic::{Builder, Origin, Program, ValueId};
 use crate::source::{Source, Span};
 
-/// Instructions that there is room for at first, for each rung: most rungs come to fewer, and room that is not used takes no memory.
+/// Instructions that there is room for at first, for each rung: most rungs come to fewer, and where the system gives memory
+/// out as it is touched, as Linux does, room that is not used takes none.
 const INSTRUCTIONS_PER_RUNG: usize = 24;
 
 /// Lowers a checked program; slots that an earlier layout has keep their offsets.

@@ -1,7 +1,7 @@
 /* Runs the scans of a program that a C compiler built, as the command measures its own engines: the same inputs at the
-   same times, changed within the time that is measured. It takes commands from the standard input, numbers in the machine's byte order:
-   first the size of the image and the image, then the count of the BOOL inputs and their offsets; then, again and again,
-   how many scans to run, and it gives the nanoseconds that they took. 0 scans ask for the image. */
+   same times, changed within the time that is measured. It takes commands from the standard input, numbers in the
+   machine's byte order: first the size of the image and the image, then the count of the BOOL inputs and their offsets;
+   then, again and again, how many scans to run, and it gives the nanoseconds that they took. 0 scans ask for the image. */
 
 #define _POSIX_C_SOURCE 200809L
 

@@ -51,8 +51,8 @@ impl<'a> Plant<'a> {
         self.random
     }
 
-    /// Runs scans, at least one; gives nanoseconds a scan. Changing the inputs counts: to read the clock around the scans
-    /// between two changes takes longer than that, and as long as a few scans of a small program.
+    /// Runs scans, at least one; gives nanoseconds a scan. Changing the inputs counts: reading the clock around the
+    /// scans between two changes instead would weigh on a small program, whose scans take no longer than that.
     pub(super) fn run(&mut self, scan: &mut dyn Scan, scans: u64) -> f64 {
         let mut left = scans;
         let start = Instant::now();
